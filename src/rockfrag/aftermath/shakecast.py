@@ -59,7 +59,7 @@ def _facts(fragilities: Sequence[ObjectFragility], kind: str) -> list[dict[str, 
 
 
 def _levels(each: ObjectFragility, state: LognormalState) -> tuple[str, str]:
-    """Median and β as a ShakeMap's levels."""
+    """Median, in a ShakeMap's unit, and β [-] of a limit state as texts."""
     metric = TO_METRIC[each.measure.imt] * LARGER_OF_TWO * state.median
     return f"{metric:.4g}", f"{state.beta:.3f}"
 

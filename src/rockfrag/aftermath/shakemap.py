@@ -189,7 +189,10 @@ def read_shakemap(
 
 
 def _read_grid(path: str) -> tuple[ET.Element, dict[str, Floats], Floats, Floats]:
-    """Root of a grid, its layers, and the longitudes and latitudes of its points, both rising."""
+    """Read a grid; return its root, its layers by name, and longitudes and latitudes of its points, both rising.
+
+    Layers are ln of measures and standard deviations of these, shape (latitudes, longitudes).
+    """
     text = _text_of(path)
     head = text[:4096]
     if "<!DOCTYPE" in head or "<!ENTITY" in text[:65536]:
@@ -278,7 +281,7 @@ def _unzipped(data: bytes, path: str) -> bytes:
 
 
 def _points(root: ET.Element, path: str) -> tuple[dict[str, tuple[int, str]], Floats]:
-    """Column and unit of each field, and all points, shape (points, fields)."""
+    """Column and unit of each field of a grid by its name, and all points, shape (points, fields)."""
     try:
         fields = {
             each.get("name", "").strip().upper(): (
@@ -314,6 +317,7 @@ def _in_order(
     """Points from south to north and in each row from west to east, with the numbers of rows and columns.
 
     They may stand in any order, and a map across 180° may count from -180° on again; they must fill a lattice.
+    ``rows``: points, shape (points, fields); ``at``: columns of longitude and latitude.
     """
     about = next(_named(root, "grid_specification"), ET.Element("none"))
     places = rows[:, list(at)]
@@ -382,7 +386,10 @@ def _number(element: ET.Element, name: str) -> float:
 
 
 def _between(points: Floats, value: float) -> tuple[int, float] | None:
-    """Point before a value, and the part of the way to the next; None outside of all of them."""
+    """Number of the point before a value, and the part of the way to the next [-]; None outside of all of them.
+
+    ``points``: rising, shape (n,).
+    """
     if not points[0] <= value <= points[-1]:
         return None
     at = min(int(points.searchsorted(value, side="right")) - 1, points.size - 2)

@@ -114,7 +114,7 @@ class ShakenObject:
 def _in_all(
     first: Estimate | None, then: Estimate | None
 ) -> tuple[float, float, float]:
-    """A probability in one shock, or in either of two, with its limits."""
+    """A probability in one shock, or in either of two, with its lower and upper limit [-]."""
     assert first is not None
     if then is None:
         return first.value, first.lower, first.upper
@@ -224,12 +224,28 @@ def _shaken_by(
     return shaken, [each.name for each, here in places if here is None]
 
 
+FELL, FELL_THEN = "after_record_fell", "after_record_fell_then"
+ROCKED, STOOD = "after_record_rocked", "after_record_stood"
+"""Ids of the texts that say what a record does to an object; ``FELL_THEN``: not before the second shock."""
+
+
 def _under_records(
     request: Request, first: Sequence[Motion], both: Sequence[Motion]
 ) -> tuple[str, WhereLeft | None]:
-    """What the record of the place, or that of both shocks in a row, does to an object, and where it leaves it."""
+    """What the record of the place does to an object, and where it leaves one that rocked and still stands.
+
+    Parameters
+    ----------
+    request : the object
+    first : one or two horizontal components of the first shock; none without a record
+    both : likewise of both shocks in a row; empty where there was one shock
+
+    Returns
+    -------
+    Id of the text, empty without a record; where the object is left, None unless it rocked and stands.
+    """
     fate = _under_record(request, first, both)
-    if fate != "after_record_rocked":
+    if fate != ROCKED:
         return fate, None
     return fate, _where_left(request, both or first)
 
@@ -241,12 +257,10 @@ def _under_record(
     if not recorded:
         return ""
     alone = _fate(request, recorded)
-    if not both or alone == "after_record_fell":
+    if not both or alone == FELL:
         return alone
     in_sequence = _fate(request, both)
-    return (
-        "after_record_fell_then" if in_sequence == "after_record_fell" else in_sequence
-    )
+    return FELL_THEN if in_sequence == FELL else in_sequence
 
 
 def _fate(request: Request, recorded: Sequence[Motion]) -> str:
@@ -256,8 +270,8 @@ def _fate(request: Request, recorded: Sequence[Motion]) -> str:
         warnings.simplefilter("ignore", UnitWarning)
         (found,) = _as_recorded(request, recorded).outcomes_of([request.objects])
     if found.overturned.any():
-        return "after_record_fell"
-    return "after_record_rocked" if found.rocked.any() else "after_record_stood"
+        return FELL
+    return ROCKED if found.rocked.any() else STOOD
 
 
 def _as_recorded(request: Request, recorded: Sequence[Motion]) -> Shaking:

@@ -630,7 +630,10 @@ _AS_IT_STANDS = finding("as_it_stands")
 
 
 def _slip_at(slip: Floats, level: Level | None, shaking: Shaking) -> float:
-    """How far the object slides at the site's level at most [m], NaN without one."""
+    """How far the object slides at the site's level at most [m], NaN without one.
+
+    ``slip``: under each motion at each level [m], shape (motions, levels) of ``shaking``.
+    """
     if level is None:
         return math.nan
     at = shaking.place_of(level.value)
@@ -647,7 +650,21 @@ def _pad(friction: float, slip: float, level: Level | None) -> Finding:
 
 
 def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
-    """Say what follows from what the motions of a plan do to an object."""
+    """Say what follows from what the motions of a plan do to an object.
+
+    Outcomes are turned into those with the velocity of the site, and with all that is not known they give
+    estimates, a decision and what each change does.
+
+    Parameters
+    ----------
+    request : the object and what is asked
+    plan : motions and levels
+    shaken : outcomes of the object, its arrangements and changes
+
+    Returns
+    -------
+    The answer.
+    """
     objects, motions, level = request.objects, plan.shaking.motions, plan.level
     hazard = plan.hazard
     counted = next(iter(shaken.arrangements.values()))
@@ -717,7 +734,15 @@ def _fraction_at(level: Level, *, state: str = OVERTURNS) -> risk.Target:
 def _evidence(
     objects: Standing, shaken: Shaken, plan: Plan, conversion: Conversion | None
 ) -> risk.Evidence:
-    """What estimates rest on: outcomes, and all that is not known."""
+    """What estimates rest on: outcomes, and all that is not known, as shifts of ln level and of ln rate.
+
+    Parameters
+    ----------
+    objects : the object and how it may stand
+    shaken : what became of it, as it stands and otherwise
+    plan : motions and levels of its place
+    conversion : what is known of the velocity at the site, if anything
+    """
     counted = next(iter(shaken.arrangements.values()))
     error = MODEL_ERRORS[objects.measured_as].beyond
     shifts = {change.name: risk.shift_of(*change.sides) for change in shaken.moved}
@@ -738,6 +763,12 @@ def _decision(
     """Decide by a value against the probability that is accepted.
 
     If the target is a rate both are annual rates, as means over what is not known are taken of rates.
+
+    Parameters
+    ----------
+    value : mean of what is estimated
+    evidence, target : by which it is drawn
+    request : with the accepted probability and its years
     """
     drawn, accepted = evidence.drawn(target), request.accepted
     if target.is_rate:
@@ -750,7 +781,10 @@ def _decision(
 def _effect(
     target: risk.Target, evidence: risk.Evidence, name: str, spread: float
 ) -> Moved[float]:
-    """What is estimated with a property one standard deviation smaller and larger."""
+    """What is estimated with a property one standard deviation smaller and larger.
+
+    ``name``: of the source; ``spread``: its relative standard deviation [-].
+    """
     prediction, sides = evidence.prediction, np.zeros(2)
     place = prediction.sources.index(name)
     shown = evidence.drawn(target).shown
@@ -787,6 +821,7 @@ def _at_site_of(
     """Turn outcomes under any motions of a set into those with the velocity of the site."""
 
     def turn(found: ObjectOutcomes) -> ObjectOutcomes:
+        """Outcomes of the same motions with the velocity of the site."""
         shaking = found.intensity_levels
         assert isinstance(shaking, Shaking)
         return conversion.of(shaking.motions).at_site(found)
@@ -795,7 +830,10 @@ def _at_site_of(
 
 
 def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
-    """The hazard curve of the level's measure or of least scatter of capacities, and that of PGV beside it."""
+    """The hazard curve that governs, and that of PGV beside it, if there is one.
+
+    The first is of the measure of the level, or of the one in which capacities of the object scatter least.
+    """
     asked = request.level.measure if request.level else None
     curves = [
         curve for curve in request.hazard if curve.measure == asked
@@ -831,7 +869,10 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
 
 
 def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | None:
-    """How many motions are at the level, lift the object, and topple it; None if none was simulated there."""
+    """Numbers of motions at the level, of those that lift the object, and of those that topple it.
+
+    None without a level, or if none was simulated there.
+    """
     if level is None:
         return None
     levels, found = now.intensity_levels, np.zeros(3)
@@ -851,7 +892,10 @@ def _variants(request: Request, plan: Plan) -> list[Moved[Standing]]:
 def _moved(
     requests: Sequence[Request], plan: Plan, meter: Meter | None
 ) -> list[list[Moved[ObjectOutcomes]]]:
-    """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
+    """Outcomes with every property of body and floor moved by its standard deviation, of each object.
+
+    One place is common to all objects.
+    """
     variants = [_variants(request, plan) for request in requests]
     sides = [side for each in variants for variant in each for side in variant.sides]
     shaken = iter(plan.fewest.outcomes_of(sides, meter))
@@ -887,7 +931,7 @@ def _compared(evidence: risk.Evidence) -> risk.Evidence:
 def _changes(
     target: risk.Target, evidence: risk.Evidence, shaken: Shaken
 ) -> tuple[Mitigation, ...]:
-    """What each change of the object itself does."""
+    """What each change of the object itself does; one onto a pad that it slides off is not shown to help."""
     known = {change: shaken.arrangements[own] for change, own in shaken.alike.items()}
     found = [
         *compare(target, evidence, shaken.before, shaken.changed),
@@ -905,7 +949,7 @@ def _changes(
 def _most_helpful_first(
     found: list[Mitigation], target: risk.Target
 ) -> tuple[Mitigation, ...]:
-    """Changes by what they do to the same motions, and by what is left where none topples the object."""
+    """Sort changes by what they do to the same motions, and by what is left where none topples the object."""
     factors = np.array([each.factor for each in found])
     values = np.array([each.value for each in found])
     order = np.zeros(len(found), dtype=np.int64)

@@ -311,7 +311,10 @@ def _of_export(path: str | os.PathLike[str], order: str) -> pd.DataFrame:
 
 
 def _with_faults(table: pd.DataFrame, path: str | os.PathLike[str]) -> pd.DataFrame:
-    """The table with its columns in one form, what is wrong with each row, and how each object stands."""
+    """The table with its columns in one form, what is wrong with each row, and how each object stands.
+
+    ``path``: for messages.
+    """
     if "name" not in table:
         table["name"] = [f"row {i}" for i in range(1, len(table) + 1)]
     for name in NUMBERS:
@@ -367,6 +370,7 @@ def tabulate(
     ]
     found = assess_each(requests, motions, progress)
     curves = np.array([_curve(each) for each in found])
+    # shape (heights, slendernesses) each
     medians, betas = curves.T.reshape(2, high, wide)
     level, hazard = found[0].level, found[0].hazard
     assert level is not None
@@ -399,7 +403,11 @@ def _of_kind(kind: str, width: float) -> dict[str, Any]:
 
 
 def _curve(found: Assessment) -> tuple[float, float]:
-    """Median and β of a block, all that is not known included."""
+    """Median and β [-] of a block, all that is not known included.
+
+    A median that the motions do not show is put beyond the highest level; where a spread is not known, β follows
+    from the level that topples a tenth.
+    """
     curve, highest = found.predicted, float(found.predicted.levels[-1])
     if not math.isfinite(curve.median):
         return BEYOND * highest, USUAL_BETA
@@ -411,7 +419,10 @@ def _curve(found: Assessment) -> tuple[float, float]:
 
 
 def _fill(table: pd.DataFrame, rows: pd.Index, surface: Surface, years: float) -> None:
-    """Write the coarse answer of some rows."""
+    """Write the coarse answer of some rows into a table: median, β, fraction and, with a hazard, probability.
+
+    ``surface``: of their floor and kind; ``years``: of the probability.
+    """
     heights = table.loc[rows, "height_m"].to_numpy(dtype=np.float64)
     # a box rocks over its narrow side
     widths = table.loc[rows, ["width_m", "depth_m"]].min(axis=1)
@@ -442,7 +453,14 @@ def _joined(
     drawn: NDArray[np.int64],
     found: Sequence[SimulatedObject],
 ) -> CoarseInventory:
-    """Put simulated answers beside the coarse ones, and say how far apart they are."""
+    """Put simulated answers beside the coarse ones, and say how far apart they are.
+
+    Parameters
+    ----------
+    table : rows with their coarse answers
+    worst, drawn : labels of the rows that were simulated: the worst, and some at random
+    found : what was simulated, in that order
+    """
     rows = [*worst, *drawn]
     table["simulated"] = math.nan
     table.loc[rows, "simulated"] = [each.probability for each in found]

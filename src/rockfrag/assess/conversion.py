@@ -192,18 +192,25 @@ class SiteVelocity:
 
         Parameters
         ----------
-        level : value of the measure, its PGV [cm/s], and how well both are known
+        level : value of the measure [g], its PGV [cm/s], and how well both are known; without a spread both are
+            exact
         between_earthquakes : standard deviation of ln PGV from one earthquake to the next [-]
         """
         ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
         about = level.spread
         if about is None:
-            return cls(between_earthquakes, ratio)
+            return cls(spread=between_earthquakes, constant=ratio)
         slope = 0.0
         if about.value > 0:
+            # that of ln PGV on ln measure, less 1 as the ratio of both is sought
             slope = about.correlation * about.pgv / about.value - 1.0
         left = about.pgv * math.sqrt(1.0 - about.correlation**2)
-        return cls(math.hypot(between_earthquakes, left), ratio, slope, level.value)
+        return cls(
+            spread=math.hypot(between_earthquakes, left),
+            constant=ratio,
+            slope=slope,
+            at=level.value,
+        )
 
     def log_ratio(self, levels: Floats) -> Floats:
         """Mean of ln (PGV over the measure [s]) at levels of the measure, of their shape."""
@@ -243,9 +250,8 @@ class Conversion:
     coefficients: tuple[float, ...]
     # Effect of ln ratio over that of ln measure [-]: 0 if PGV says nothing, 1 if all, up to 2 for displacement
     weight: float
-    error: (
-        float  # Its standard error by a jackknife over earthquakes [-]; 0 if not needed
-    )
+    # Its standard error by a jackknife over earthquakes [-]; 0 if not needed
+    error: float
     logs: Floats  # ln (PGV over the measure [s]) of each motion, shape (motions,)
     known: SiteVelocity | None  # What is known of the site; None if nothing is
     spread: float  # Standard deviation of the mean of ln ratio at the site [-]
@@ -286,7 +292,10 @@ class Conversion:
     def sides(
         self, outcomes: ObjectOutcomes
     ) -> tuple[ObjectOutcomes, ObjectOutcomes] | None:
-        """The same with less and more spread of velocities at a given level; None where that is not open."""
+        """Outcomes with less and with more spread of velocities at a given level of the measure.
+
+        It is open where hazard curves of both measures are known, which do not say it; None elsewhere.
+        """
         known = self.known
         if known is None or not known.curves:
             return None
@@ -295,7 +304,10 @@ class Conversion:
         return self._moved(outcomes, less), self._moved(outcomes, more)
 
     def _moved(self, outcomes: ObjectOutcomes, site: SiteVelocity) -> ObjectOutcomes:
-        """Each motion at the level at which it is as strong for the object as with the velocity of the site."""
+        """Take each motion at the level at which it is as strong for the object as with the velocity of the site.
+
+        A motion stands for several, one for each node of the spread of velocities about their mean.
+        """
         intensity_levels = outcomes.intensity_levels
         levels = intensity_levels.levels
         nodes = site.spread * NODES if site.spread > 0 else np.zeros(1)
@@ -405,7 +417,11 @@ def published_velocity(
 def _site_velocity(
     motions: MotionSet, measure: IntensityMeasure, site: Site
 ) -> tuple[SiteVelocity | None, float]:
-    """What is known of the velocity at the site, and the standard deviation of the mean of ln ratio [-]."""
+    """What is known of the velocity at the site, and the standard deviation of the mean of ln ratio [-].
+
+    In this order: a hazard curve of PGV, PGV of the level, SA(1 s) of the level, a published relation, and how
+    velocity follows the earthquakes of the set. None where nothing is known.
+    """
     given, level, curves = site.given, site.level, site.curves
     logs = motions.log_ratios(measure, of_all=True)
     relation = VelocityRelation.of(motions.about, logs)
@@ -496,7 +512,14 @@ class VelocityRelation:
     def of(
         cls, about: Sequence[Mapping[str, object]], logs: Floats
     ) -> "VelocityRelation":
-        """Fit it to what is known of the record of each motion, and to its ln ratio, shape (motions,)."""
+        """Fit the relation to the records of a set, by least squares; motions of one record count as one.
+
+        Parameters
+        ----------
+        about : of each motion, what is known of its record: ``earthquake``, ``station``, ``magnitude``,
+            ``distance_km``, ``vs30_m_s``
+        logs : its ln (PGV over the measure), shape (motions,)
+        """
         table = pd.DataFrame(
             {
                 "record": [
@@ -549,7 +572,7 @@ class VelocityRelation:
 
 
 def _facts(given: Records) -> tuple[float, float, float]:
-    """Magnitude, ln distance and ln Vs30 of a site; NaN where not known."""
+    """Magnitude, ln distance (distance in km) and ln Vs30 (in m/s) of a site; NaN where not known."""
     distance = math.log(max(given.distance_km, 1.0))
     return given.magnitude, distance, math.log(given.vs30)
 

@@ -148,6 +148,7 @@ def _who(found: Assessment) -> dict[str, Value]:
 
 
 def _amount(found: Assessment, value: float) -> Finding:
+    """A level of the measure with its unit, in words."""
     measure = found.measure
     about = {"measure": measure.imt, "unit": measure.unit}
     return finding(Text.AMOUNT, value=two(value), **about)
@@ -195,7 +196,7 @@ def _said_chance(estimate: Estimate) -> Value:
 
 
 def _numbers(estimate: Estimate) -> tuple[float, float, float]:
-    """A number and its limits."""
+    """Value, lower and upper limit of an estimate."""
     return estimate.value, estimate.lower, estimate.upper
 
 

@@ -97,12 +97,10 @@ class _Layout:
 
     def page(self) -> str:
         """The page of all objects as HTML."""
-        inventory, joint, texts, years = (
-            self.inventory,
-            self.joint,
-            self.texts,
-            self.years,
-        )
+        inventory = self.inventory
+        joint = self.joint
+        texts = self.texts
+        years = self.years
         numbers = self._figure(
             "numbers",
             (Text.NUMBERS_ALT, Text.NUMBERS_CAPTION),

@@ -10,8 +10,9 @@ In: an object, holders and motions. Out: forces [N] and factors on the probabili
 Theory: ``docs/holding.md``.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -87,35 +88,60 @@ def try_holders(
         for system in _systems(objects, shaking)
         if can_be_simulated(system, shaking)
     ]
+    # outcomes without a holder, by the number of the system
     before: dict[int, ObjectOutcomes] = {}
     found = []
     for number, holder in enumerate(objects.holders_to_try()):
         if number and meter is not None:
             meter.add(seconds_of_a_holder(objects, shaking, few))
-        for k, system in enumerate(systems):
-            if holder.slow and not system.planar:
-                continue
-            if not can_be_simulated(holder.on(system), shaking):
-                continue
-            enough, change = holder, holder.called()
-            if holder.demand:
-                demands = demands_of(holder, system, at_level[holder.slow])
-                asked = ask(demands, np.zeros(demands.size))
-                if asked <= 0:
-                    # hardly a motion asks anything of it
-                    break
-                enough = holder.bearing(asked)
-                held = int(count_held(demands, enough.bears))
-                counts = {"held": held, "total": demands.size}
-                change = finding(
-                    Text.HOLDS, change=enough.called(), level=level.amount, **counts
-                )
-            if k not in before:
-                before[k] = few.outcomes_of_system(system)[0]
-            after = few.outcomes_of_system(enough.on(system))[0]
-            found.append(Trial(change, holder.key, before[k], after))
-            break
+        k = _first_that_can_be_held(holder, systems, shaking)
+        enough = None
+        if k is not None:
+            enough = _strong_enough(holder, systems[k], at_level[holder.slow], level)
+        if k is None or enough is None:
+            continue
+        if k not in before:
+            before[k] = few.outcomes_of_system(systems[k])[0]
+        after = few.outcomes_of_system(enough.holder.on(systems[k]))[0]
+        found.append(Trial(enough.change, holder.key, before[k], after))
     return found
+
+
+def _first_that_can_be_held(
+    holder: Holder, systems: Sequence[System], shaking: Shaking
+) -> int | None:
+    """Number of the first of some systems that an engine simulates, soon enough, with a holder; None of none."""
+    for k, system in enumerate(systems):
+        if holder.slow and not system.planar:
+            continue
+        if can_be_simulated(holder.on(system), shaking):
+            return k
+    return None
+
+
+class _Enough(NamedTuple):
+    """A holder that bears what is asked of it."""
+
+    holder: Holder
+    change: Finding  # what it is, what it bears, and in how many motions
+
+
+def _strong_enough(
+    holder: Holder, system: System, at_level: Shaking, level: Level
+) -> _Enough | None:
+    """Return a holder as strong as ``PART`` of the motions at the site's level ask; None if hardly any asks."""
+    if not holder.demand:
+        return _Enough(holder, holder.called())
+    demands = demands_of(holder, system, at_level)
+    asked = ask(demands, np.zeros(demands.size))
+    if asked <= 0:
+        return None
+    enough = holder.bearing(asked)
+    held = int(count_held(demands, enough.bears))
+    counts = {"held": held, "total": demands.size}
+    called = enough.called()
+    change = finding(Text.HOLDS, change=called, level=level.amount, **counts)
+    return _Enough(enough, change)
 
 
 def seconds_of_a_holder(objects: Standing, shaking: Shaking, few: Shaking) -> float:

@@ -502,7 +502,7 @@ def _request_of(
 
 
 def _coordinates(row: Row, own: dict[str, Any]) -> tuple[float, float] | None:
-    """Latitude and longitude of a row, taken out of what is known of its object; None where neither is given."""
+    """Take latitude and longitude [degrees] of a row out of what is known of its object; None without them."""
     given = [key for key in COORDINATES if key in own]
     if not given:
         return None

@@ -43,8 +43,19 @@ def compare(
 ) -> list[Mitigation]:
     """Estimate again with each change of the object, with the same errors of all that is not known.
 
-    Limits of the factor are over the earthquakes; a change is shown to help if they leave nothing else open.
-    So few earthquakes as give no verdict give no limits.
+    Limits of the factor are over the earthquakes; a change is shown to help if they leave nothing else open. So
+    few earthquakes as give no verdict give no limits.
+
+    Parameters
+    ----------
+    target : what is estimated
+    evidence : what it rests on
+    now : outcomes without a change
+    changed : outcomes of the same motions with each change
+
+    Returns
+    -------
+    What each change does, in their order.
     """
     drawn = evidence.drawn(target, evidence.of(now))
     earthquakes = len(set(evidence.outcomes.earthquakes))
@@ -54,13 +65,22 @@ def compare(
         _, after, factor, least, most, helps, shown = _compared(
             drawn, other, earthquakes
         )
-        said = Mitigation(change, after, factor, least, most, helps > 0, shown > 0)
-        found.append(said)
+        found.append(
+            Mitigation(
+                change=change,
+                value=after,
+                factor=factor,
+                lower=least,
+                upper=most,
+                helps=helps > 0,
+                shown=shown > 0,
+            )
+        )
     return found
 
 
 def _compared(before: Drawn, after: Drawn, earthquakes: int) -> list[float]:
-    """Both numbers, their ratio and its limits over the earthquakes, whether it helps and is shown to."""
+    """Seven numbers of a comparison (``fill_comparison``): before, after, ratio, its limits, helps, is shown."""
     sets = len(before.prediction.draws.weights)
     work, found = np.zeros((2, before.values.size)), np.zeros(SHOWN + 1)
     kind = before.target.kind

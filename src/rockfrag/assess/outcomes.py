@@ -180,9 +180,8 @@ class ObjectOutcomes:
         p, n = self.fractions(), len(set(self.earthquakes))
         low, high = wilson_interval(p * n, np.full(p.size, n))
         # what does not rock cannot topple
-        return np.where(p > 0, low, 0.0), np.where(
-            self.fractions(state=ROCKS) > 0, high, 0.0
-        )
+        rocks = self.fractions(state=ROCKS) > 0
+        return np.where(p > 0, low, 0.0), np.where(rocks, high, 0.0)
 
     def first(self) -> NDArray[np.intp]:
         """Place of the least level allowed at which each motion topples the body, or -1, shape (motions,)."""
@@ -252,7 +251,20 @@ class Shaking(IntensityLevels):
         bodies: Sequence[Mapping[Key, Body]],
         meter: Meter | None = None,
     ) -> list[dict[Key, ObjectOutcomes]]:
-        """Shake several bodies of each of several objects by every motion at every level."""
+        """Shake several bodies of each of several objects by every motion at every level.
+
+        So many at once are shaken as memory and patience allow.
+
+        Parameters
+        ----------
+        objects : as they stand
+        bodies : of each object, by a key
+        meter : is told the seconds that are done
+
+        Returns
+        -------
+        Outcomes of each object by the keys of its bodies.
+        """
         every = [
             (object_, body)
             for object_, named in zip(objects, bodies, strict=True)
@@ -326,6 +338,7 @@ class Shaking(IntensityLevels):
         result, light = simulated(
             systems, shaking, self._factors(shaking, np.take(first, of_row))
         )
+        # where the directions of each record begin; the easiest of them lifts the object
         starts = np.flatnonzero(np.diff(of_row, prepend=-1))
         lifting = [
             np.minimum.reduceat(lifting_in_plane(system, shaking), starts)
@@ -346,7 +359,7 @@ class Shaking(IntensityLevels):
         return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
 
     def _records(self) -> tuple[list[GroundMotion], Floats]:
-        """All components of each record, and the factors on them, shape (records, levels)."""
+        """All components of each record, in the order of the records, and factors on them, (records, levels)."""
         motions = self.motions
         shaking = [
             GroundMotion(*motions.components(record)).with_second()
@@ -382,7 +395,17 @@ class Shaking(IntensityLevels):
     def on_pad(
         self, objects: Standing, friction: float
     ) -> tuple[ObjectOutcomes, Floats]:
-        """Outcomes of the object on a pad on which it may slide, and how far it does [m], (motions, levels)."""
+        """Outcomes of the object on a pad on which it may slide, and how far it does.
+
+        Parameters
+        ----------
+        objects : the object
+        friction : coefficient of the pad [-]
+
+        Returns
+        -------
+        The outcomes, and the largest slip [m], shape (motions, levels).
+        """
         system = objects.system_of(objects.body)
         system = system.with_friction(Friction(friction, friction), at=-1)
         base = self.motions.base
@@ -392,7 +415,10 @@ class Shaking(IntensityLevels):
         return found, result.peak_slip[0, ..., -1]
 
     def _factors(self, shaking: Sequence[Motion], rows: Any = slice(None)) -> Floats:
-        """Factors on what shakes, by the rows of the levels; at rest what is not counted, shape (rows, levels)."""
+        """Factors on what shakes, shape (rows, levels); next to none where a case is not counted.
+
+        ``shaking``: motions; ``rows``: numbers of the rows of the levels that they are of.
+        """
         scales = np.ascontiguousarray(self.scales[rows])
         return _factors(scales, np.ascontiguousarray(self.allowed[rows]), shaking)
 
@@ -404,10 +430,16 @@ class Shaking(IntensityLevels):
         *,
         lifting: Sequence[Floats],
     ) -> list[ObjectOutcomes]:
-        """Outcomes of each system, which cannot slide, of states with the shape (systems, motions, levels).
+        """Outcomes of each system, which cannot slide.
 
-        ``of_row`` is the record of each motion of the result where several may be of one; what happens to a record
-        from one side happens. ``lifting`` are the factors on motions, or on these records, that lift each system.
+        What happens to a record in one of its directions happens.
+
+        Parameters
+        ----------
+        states : whether each limit state was reached, shape (systems, motions, levels), by its name
+        light : whether each system may have left the ground
+        of_row : number of the record of each motion, where several may be of one; None for motions by themselves
+        lifting : factors on motions, or on records, that lift each system
         """
         recorded = self.motions.values(self.measure)
         if of_row is not None:
@@ -463,7 +495,11 @@ class Shaking(IntensityLevels):
 
 
 def _factors(scales: Floats, allowed: Flags, shaking: Sequence[Motion]) -> Floats:
-    """Factors that scale each motion to each level, 0 where that case is not counted, shape (rows, levels)."""
+    """Factors that scale each motion to each level, next to none where that case is not counted, (rows, levels).
+
+    ``scales``, ``allowed``: shape (rows, levels); ``shaking``: a motion a row, whose peaks may be no larger than
+    is believed.
+    """
     factors = np.zeros(scales.shape)
     fill_factors(scales, allowed, peaks_of(shaking), factors)
     return factors
@@ -510,7 +546,17 @@ def states_of(result: Outcomes) -> dict[str, Flags]:
 def simulated(
     systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
 ) -> tuple[Outcomes, list[bool]]:
-    """What happened under factors of shape (motions, levels), and which systems may have left the ground."""
+    """Simulate systems, and say which of them may have left the ground.
+
+    Parameters
+    ----------
+    systems, shaking : what is shaken, and by what
+    scales : factors on the motions, shape (motions, levels)
+
+    Returns
+    -------
+    The outcomes, and whether pure rocking may be no answer for a system.
+    """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", LightBodies)
         result = overturns(systems, shaking, scales=scales)
@@ -556,6 +602,11 @@ def find_directions(
 
     Every record is turned by steps of ``STEP_DEG`` about the vertical; levels are of the geometric mean of its
     components, whatever the direction.
+
+    Parameters
+    ----------
+    objects, motions : the object, and the records
+    measure, level : of the shaking; the level in its unit, None without one
     """
     if not motions.pairs:
         return None
@@ -587,7 +638,7 @@ def find_directions(
 
 
 def _half(x: np.ndarray, fraction: np.ndarray) -> float:
-    """Where a rising fraction passes one half, NaN where it does not."""
+    """Where a rising fraction passes one half, in x, NaN where it does not; both of shape (n,), x rising."""
     reached = np.flatnonzero(fraction >= 0.5)
     if not reached.size or reached[0] == 0:
         return float("nan")

@@ -181,7 +181,7 @@ class _Layout:
     def _table(
         self, caption: str, titles: Sequence[Value], rows: Rows, numeric: slice
     ) -> Markup:
-        """A table of values under their titles; some of its columns are of numbers."""
+        """A table of values under their titles; ``numeric``: which of its columns are of numbers."""
         head = self.texts.lines(titles)
         cells = [self.texts.lines(row) for row in rows]
         return text_table(head, cells, self._text(caption), head[numeric])
@@ -210,6 +210,7 @@ class _Layout:
     def _titled(
         self, caption: str, titles: Sequence[Text], rows: Rows, numeric: slice
     ) -> Markup:
+        """A table whose titles are texts; ``numeric``: which of its columns are of numbers."""
         return self._table(caption, [finding(id) for id in titles], rows, numeric)
 
     def _stands(self) -> Section:
@@ -295,6 +296,7 @@ class _Layout:
         return self._titled(Text.EFFECTS_CAPTION, titles, rows, slice(1, None))
 
     def _assumed(self) -> Section:
+        """What was assumed, a sentence each."""
         title, message = map(self._text, (Text.ASSUMED_TITLE, Text.ASSUMED_MESSAGE))
         stated = self.texts.lines(assumptions(self.found))
         return Section("assumed", title, message, stated)
@@ -343,10 +345,8 @@ class _Layout:
     def _motions(self) -> Section:
         """The motions, those first that topple the object at the lowest level."""
         found = self.found
-        recorded, first = (
-            found.motions.values(found.measure),
-            found.counted.first_levels(),
-        )
+        recorded = found.motions.values(found.measure)
+        first = found.counted.first_levels()
         rows: list[tuple[Value, ...]] = []
         for i in np.argsort(first, kind="stable")[:MOTIONS_SHOWN]:
             motion = found.motions.ground[i]
@@ -463,7 +463,7 @@ def _part(fraction: float) -> said.Finding:
 
 
 def _years(period: float) -> str:
-    """A return period to two digits: 475 years stand for some 480."""
+    """A return period [years] to two digits, as text: 475 becomes 480."""
     rounded = float(f"{period:.2g}")
     return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
 
@@ -505,7 +505,18 @@ def _shown_as(objects: Standing, way: str, texts: Catalogue) -> str:
 def _in_space(
     objects: Standing, motions: MotionSet, chosen: list[int], texts: Catalogue
 ) -> Markup:
-    """The ways to stand that are known in space, on pedestals that stay where they are, under both components."""
+    """Markup of the live view in space of the ways to stand that are known there.
+
+    Parameters
+    ----------
+    objects : the object and how it may stand
+    motions : both components of records
+    chosen : numbers of motions, in ``motions.ground``, whose records may be looked at
+    texts : of the page's language
+
+    Pedestals stay where they are, so they are shown as one block as high as all; ways that are not known in space
+    are named below the view.
+    """
     bodies, left_out = {}, []
     for way, body in objects.arrangements().items():
         name = _shown_as(objects, way, texts)

@@ -191,7 +191,10 @@ def _curve(text: str, measure: str, where: str) -> HazardCurve:
 
 
 def _point(line: str, where: str) -> tuple[float, float]:
-    """Level and rate of a line, between which a blank, a semicolon, a tabulator or a comma stands."""
+    """Level and how often it is exceeded, the two numbers of a line.
+
+    A blank, a semicolon, a tabulator or a comma stands between them; ``where``: for messages.
+    """
     cells = [cell for cell in re.split(r"[;\s]+|,(?=\s)", line) if cell]
     if len(cells) == 1:
         cells = line.split(",")

@@ -113,11 +113,21 @@ class Target:
         return self.kind == estimates.RATE
 
     def of(self, levels: Floats, fractions: Floats) -> Floats:
-        """The numbers of rows of fractions at levels, before they are shown: rates, of probabilities."""
+        """The numbers of rows of fractions at levels, before they are shown: rates, of probabilities.
+
+        Parameters
+        ----------
+        levels : rising, shape (levels,)
+        fractions : shape (…, levels)
+
+        Returns
+        -------
+        The numbers, shape (…).
+        """
         return self.with_mean(levels, fractions)[0]
 
     def with_mean(self, levels: Floats, fractions: Floats) -> tuple[Floats, float]:
-        """The same, and the mean of the rows; of levels NaN."""
+        """The numbers as of :meth:`of`, and the mean of all rows; of levels NaN."""
         rows = np.atleast_2d(np.ascontiguousarray(fractions, dtype=np.float64))
         values, middle = np.zeros(len(rows)), math.nan
         if self.is_level:
@@ -127,7 +137,7 @@ class Target:
         return values.reshape(np.shape(fractions)[:-1]), float(middle)
 
     def _weights(self, levels: Floats) -> Floats:
-        """Weights with which fractions at the levels add up."""
+        """Weights with which fractions at the levels add up to the number, shape (levels,)."""
         if self.hazard is not None:
             return _rate_weights(levels.tobytes(), self.hazard)
         if self.spread > 0:
@@ -167,8 +177,19 @@ def fraction_target(
 
 
 def _weights_of_normal(x: Floats, spread: float) -> Floats:
-    """Weights of rising points in the mean of what is linear between them, over a normal value about 0."""
+    """Weights of rising points in the mean of what is linear between them, over a normal value about 0.
+
+    Parameters
+    ----------
+    x : the points, shape (n,); beyond them the value of the nearest one stays
+    spread : standard deviation of the normal value
+
+    Returns
+    -------
+    The weights, of sum 1, shape (n,).
+    """
     z = x / spread
+    # probability up to each point
     below = special.ndtr(z)
     # integral of the value times its density up to each point
     moment = -spread * np.exp(-0.5 * z**2) / math.sqrt(2 * math.pi)

@@ -76,14 +76,17 @@ class Scan:
     def body(self, fraction: float = 0.5, turned_deg: float = 0.0) -> RigidBody:
         """The body in space of such a way."""
         way = self.row_at(fraction)
-        tolerance, retreat = (
-            way["contact_tolerance_mm"] / 1e3,
-            way["edge_retreat_mm"] / 1e3,
-        )
+        tolerance = way["contact_tolerance_mm"] / 1e3
+        retreat = way["edge_retreat_mm"] / 1e3
         return self.shape.body(way["direction_deg"] - turned_deg, tolerance, retreat)
 
     def sides(self) -> dict[str, tuple[float, float, float]]:
-        """Places of each source's standard deviation to both sides, and half their distance in ln angle."""
+        """What each source does to the way to stand, by its name.
+
+        That is the place of the way one standard deviation of the source lower among all ways, ordered, the place
+        of that one higher [-, 0 to 1 each], and half of the distance between both in ln of what they are ordered
+        by.
+        """
         found = {}
         for name, part in self.parts.items():
             low, high = special.ndtr(-math.sqrt(part)), special.ndtr(math.sqrt(part))
@@ -147,7 +150,15 @@ def make_scan(
 def _ordered(
     shape: Shape, arrangements: pd.DataFrame, names: list[str], order: str
 ) -> Scan:
-    """A scan whose arrangements are sorted by a column, with the part of each unknown in it."""
+    """A scan whose ways to stand are sorted by a column, with the part of each unknown in it.
+
+    Parameters
+    ----------
+    shape : of the scan
+    arrangements : a row a way to stand, with the columns ``names`` and ``order``
+    names : of the unknowns that were drawn
+    order : column that the ways are sorted by
+    """
     ordered = arrangements.sort_values(order, kind="stable", ignore_index=True)
     return Scan(shape, ordered, _parts(ordered, names, order), order)
 

@@ -202,11 +202,26 @@ def _direction(up: float, up_low: float, x: float, side: float) -> float:
 def _octant(
     small: float, small_low: float, big: float, big_low: float
 ) -> tuple[float, float]:
-    """Arc tangent of small / big, from 0 to π/4, as a sum of two."""
+    """Arc tangent of small / big, from 0 to π/4 [rad].
+
+    Each number is a sum: ``_low`` is what rounding leaves of it, and so the angle is returned. The quotient is
+    brought near zero by the arc tangent of the nearest eighth, of which a table has both parts; its own remainder
+    follows from an exact product (Dekker, 1971, Numer. Math. 18: 224-242), and the rest is a short series.
+
+    Parameters
+    ----------
+    small, small_low : of one side, not larger than the other
+    big, big_low : of the other side
+
+    Returns
+    -------
+    The angle, and what rounding leaves of it.
+    """
     if big == 0.0:
         return 0.0, 0.0
     if big == math.inf:
         return (_ARC[8], _ARC_LOW[8]) if small == math.inf else (0.0, 0.0)
+    # powers of two, which change no digit and keep products from under- and overflow
     if big < _TINY:
         small, small_low, big, big_low = (
             small * _UP,
@@ -228,6 +243,7 @@ def _octant(
     product, e = _product(c, small)
     below, below_low = _sum(big, product)
     below_low += big_low + e + c * small_low
+    # the quotient, and its remainder over the divisor
     z = above / below
     product, e = _product(z, below)
     z_low = (((above - product) - e) + above_low - z * below_low) / below

@@ -50,6 +50,7 @@ def check_density(width: float, height: float, mass: float) -> None:
     thin, thick = DEPTHS[0] * width, DEPTHS[1] * max(width, height)
 
     def density(depth: float) -> float:
+        """Density of the block if it is so deep [kg/m³]."""
         # the volume of a size of 1e-300 m is 0 in numbers
         volume = width * height * depth
         return mass / volume if volume else math.inf

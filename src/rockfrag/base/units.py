@@ -129,10 +129,8 @@ def quantity(given: object, to: str, unit: str | None) -> float:
     number = _NUMBER.fullmatch(given) if isinstance(given, str) else None
     if isinstance(given, int | float) and not isinstance(given, bool):
         # a whole number may be larger than any float
-        value, written = (
-            math.inf if abs(given) > sys.float_info.max else float(given),
-            "",
-        )
+        value = math.inf if abs(given) > sys.float_info.max else float(given)
+        written = ""
     elif number:
         value, written = float(number[1]), number[2]
     else:

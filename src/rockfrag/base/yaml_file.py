@@ -76,6 +76,7 @@ def _text(loader: _StrictLoader, node: yaml.ScalarNode) -> str:
 
 
 def _number(loader: _StrictLoader, node: yaml.ScalarNode) -> float:
+    """A floating-point number of a file, also an infinite one or none."""
     return float(
         node.value.replace(".inf", "inf").replace(".nan", "nan").replace(".NaN", "nan")
     )

@@ -83,11 +83,9 @@ def hysteretic_statement(
     The sentence.
     """
     law = building.masonry
-    yielding, shear, rocking = (
-        f"{100 * law.yield_drift:.2f} %",
-        f"{100 * law.shear_drift:.2f} %",
-        f"{100 * law.rocking_drift:.2f} %",
-    )
+    yielding = f"{100 * law.yield_drift:.2f} %"
+    shear = f"{100 * law.shear_drift:.2f} %"
+    rocking = f"{100 * law.rocking_drift:.2f} %"
     outcomes = {
         StoreyState.UNCRACKED: "below cracking.",
         StoreyState.CRACKED: f"cracked but below yield ({yielding}).",

@@ -51,12 +51,23 @@ def shear_strengths(building: ShearBuilding) -> Floats:
 
 
 def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
-    """Corners of the envelope of each storey: cracking, yield, shear limit, rocking limit."""
+    """Corners of the envelope of each storey: cracking, yield, shear limit, rocking limit.
+
+    Parameters
+    ----------
+    building : with its masonry law
+
+    Returns
+    -------
+    Displacements [m] and forces [N], shape (storeys, 4) each.
+
+    Raises
+    ------
+    InputError : where a storey is too soft to reach its strength before it yields
+    """
     law = building.masonry
-    heights, stiffnesses = (
-        np.asarray(building.heights),
-        np.asarray(building.stiffnesses),
-    )
+    heights = np.asarray(building.heights)
+    stiffnesses = np.asarray(building.stiffnesses)
     strength = shear_strengths(building)
     cracking = law.cracking * strength
     limits = (
@@ -77,6 +88,11 @@ def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
     return displacement, force
 
 
+PINCH_FORCE, PINCH_DRIFT, BY_DUCTILITY, BY_ENERGY, UNLOADING = range(5)
+"""Places of the parameters of a law: force and displacement of the pinching point, damage by ductility and by
+work, and exponent of unloading [-]."""
+
+
 def law_parameters(law: MasonryLaw) -> Floats:
     """Parameters of the law as the kernels take them, shape (5,)."""
     return np.array(
@@ -92,7 +108,7 @@ def law_parameters(law: MasonryLaw) -> Floats:
 
 @cached_njit()
 def envelope(x: float, corner: Any, strength: Any) -> float:
-    """Force of the envelope at a displacement x ≥ 0."""
+    """Force of the envelope [N] at a displacement x ≥ 0 [m]; ``corner`` [m] and ``strength`` [N], shape (4,)."""
     if x <= corner[0]:
         return float(strength[0] / corner[0] * x)
     for i in range(1, corner.size):
@@ -106,14 +122,17 @@ def envelope(x: float, corner: Any, strength: Any) -> float:
 def unloading_stiffness(
     aim: float, corner: Any, strength: Any, exponent: float
 ) -> float:
-    """Stiffness of unloading from the side whose largest displacement is ``aim``."""
+    """Stiffness of unloading [N/m] from the side whose largest displacement is ``aim`` [m].
+
+    ``corner``, ``strength``: of the envelope; ``exponent``: β of rule 2 of the module.
+    """
     ductility = max(aim / corner[0], 1.0)
     return float(strength[0] / corner[0] / ductility**exponent)
 
 
 @cached_njit()
 def _area(corner: Any, strength: Any) -> float:
-    """Area under both sides of the envelope."""
+    """Area under both sides of the envelope [J]."""
     total = corner[0] * strength[0]
     for i in range(1, corner.size):
         total += (corner[i] - corner[i - 1]) * (strength[i] + strength[i - 1])
@@ -124,7 +143,16 @@ def _area(corner: Any, strength: Any) -> float:
 def move(
     memory: Any, to: float, corner: Any, strength: Any, law: Any, moved: Any
 ) -> None:
-    """Move a storey from the state ``memory`` to a displacement, as seen from where it moves; fill ``moved``."""
+    """Move a storey to a displacement by rules 1 to 3 of the module; all is seen from the side that it moves to.
+
+    Parameters
+    ----------
+    memory : state of the storey, shape (``MEMORY``,)
+    to : displacement [m]
+    corner, strength : of its envelope [m], [N], shape (4,)
+    law : its parameters (:func:`law_parameters`)
+    moved : filled with the state there, shape (``MEMORY``,)
+    """
     moved[:] = memory
     step = to - memory[DISPLACEMENT]
     if step == 0.0:
@@ -132,17 +160,20 @@ def move(
     side = 1.0 if step > 0 else -1.0
     front, back = (AIM_POS, AIM_NEG) if step > 0 else (AIM_NEG, AIM_POS)
     zero = ZERO_POS if step > 0 else ZERO_NEG
+    # displacement and force now, and the displacement to come
     x0, f0, x = side * memory[DISPLACEMENT], side * memory[FORCE], side * to
-    back_stiffness = unloading_stiffness(memory[back], corner, strength, law[4])
-    front_stiffness = unloading_stiffness(memory[front], corner, strength, law[4])
+    back_stiffness = unloading_stiffness(memory[back], corner, strength, law[UNLOADING])
+    front_stiffness = unloading_stiffness(
+        memory[front], corner, strength, law[UNLOADING]
+    )
 
     if memory[DIRECTION] != side and f0 <= 0.0:
         # a reversal: note where the force will be zero, and enlarge the aim by damage
         moved[zero] = x0 - f0 / back_stiffness
         if memory[back] > corner[0]:
             work = memory[WORK] - 0.5 * f0 * f0 / back_stiffness
-            damage = law[3] * work / _area(corner, strength)
-            damage += law[2] * (memory[back] - corner[0]) / corner[0]
+            damage = law[BY_ENERGY] * work / _area(corner, strength)
+            damage += law[BY_DUCTILITY] * (memory[back] - corner[0]) / corner[0]
             moved[front] = memory[front] * (1.0 + damage)
 
     moved[front] = max(moved[front], corner[0])
@@ -167,13 +198,19 @@ def move(
 def _reload(
     x: float, zero: float, aim: float, force: float, stiffness: float, law: Any
 ) -> float:
-    """Force at x on the two lines from (zero, 0) through the pinching point to (aim, force)."""
-    pinch = zero + (aim - (1.0 - law[0]) * force / stiffness - zero) * law[1]
+    """Force [N] at x on the two lines from (zero, 0) through the pinching point to (aim, force).
+
+    ``x``, ``zero``, ``aim``: displacements [m]; ``force``: at the aim [N]; ``stiffness``: of unloading from there
+    [N/m]; ``law``: its parameters.
+    """
+    low, drift = law[PINCH_FORCE], law[PINCH_DRIFT]
+    # between where the force is zero and where unloading from the aim would have the pinching force
+    pinch = zero + (aim - (1.0 - low) * force / stiffness - zero) * drift
     if x < pinch:
-        return float(law[0] * force * (x - zero) / (pinch - zero))
+        return float(low * force * (x - zero) / (pinch - zero))
     if aim <= pinch:
         return float(force)
-    return float(force * (law[0] + (1.0 - law[0]) * (x - pinch) / (aim - pinch)))
+    return float(force * (low + (1.0 - low) * (x - pinch) / (aim - pinch)))
 
 
 # [s]; halving it changes floor peaks of the reference building by less than 0.1 %
@@ -183,7 +220,18 @@ LONGEST_STEP = 2e-4
 def respond_hysteretically(
     building: ShearBuilding, motion: Motion, longest_step: float = LONGEST_STEP
 ) -> BuildingResponse:
-    """Integrate the building with its masonry law; damping is that of the elastic modes."""
+    """Integrate the building with its masonry law; damping is that of the elastic modes.
+
+    Parameters
+    ----------
+    building : the storeys, from below
+    motion : of the ground [m/s²]
+    longest_step : of the integration [s]
+
+    Returns
+    -------
+    Histories of floors and storeys at the samples, with energies.
+    """
     corner, strength = storey_envelopes(building)
     parts = max(1, int(np.ceil(motion.dt / longest_step - 1e-9)))
     step = motion.dt / parts
@@ -205,7 +253,11 @@ def respond_hysteretically(
 
 @cached_njit()
 def _shears(u: Any, memory: Any, moved: Any, masonry: Any, force: Any) -> None:
-    """Storey states at floor displacements u, and the forces they put on the floors."""
+    """Fill storey states at floor displacements u [m], and the forces that they put on the floors [N].
+
+    ``memory``, ``moved``: states of storeys before and at u, shape (storeys, ``MEMORY``); ``masonry``: envelopes
+    and law as of :func:`_integrate`; ``force``: shape (storeys,).
+    """
     n = u.size
     corner, strength, law = masonry
     below = 0.0
@@ -279,6 +331,7 @@ def _find_equilibrium(
     rest = np.zeros(n)
     change = step * v + 0.5 * step * step * a
     for _ in range(100):
+        # at the end of the step by a ``change`` of the displacements
         for i in range(n):
             u1[i] = u[i] + change[i]
             v1[i] = 2 / step * change[i] - v[i]
@@ -288,6 +341,7 @@ def _find_equilibrium(
             rest[i] = -mass[i] * (ground + a1[i]) - force1[i]
             for j in range(n):
                 rest[i] -= viscous[i, j] * v1[j]
+        # what the equations of motion lack, over the effective stiffness, corrects the change
         largest = correction = 0.0
         for i in range(n):
             better = 0.0
@@ -304,7 +358,8 @@ def _find_equilibrium(
 def _add_work(ground: float, matrices: Any, now: Any, then: Any, work: Any) -> None:
     """Add the work of a step [J] of the ground, of damping and of storeys: mean forces times displacements.
 
-    ``ground`` is its mean acceleration in the step.
+    ``ground``: its mean acceleration in the step [m/s²]; ``matrices`` as of :func:`_integrate`; ``now``, ``then``:
+    states of floors at both ends, shape (4, floors); ``work``: shape (3,).
     """
     mass, viscous, _ = matrices
     n = mass.size
@@ -319,12 +374,15 @@ def _add_work(ground: float, matrices: Any, now: Any, then: Any, work: Any) -> N
 
 @cached_njit()
 def _stored(mass: Any, masonry: Any, floors: Any, memory: Any) -> Any:
-    """Kinetic energy of the floors, and what the storeys would give back on unloading [J]."""
+    """Kinetic energy of the floors, and energy that the storeys would give back on unloading [J].
+
+    ``mass``: of floors [kg]; ``floors``: their state, shape (4, floors); ``memory``: of storeys.
+    """
     corner, strength, law = masonry
     strain = kinetic = 0.0
     for i in range(mass.size):
         aim = memory[i, AIM_POS] if memory[i, FORCE] > 0 else memory[i, AIM_NEG]
-        stiffness = unloading_stiffness(aim, corner[i], strength[i], law[4])
+        stiffness = unloading_stiffness(aim, corner[i], strength[i], law[UNLOADING])
         strain += 0.5 * memory[i, FORCE] ** 2 / stiffness
         kinetic += 0.5 * mass[i] * floors[SPEED, i] ** 2
     return kinetic, strain

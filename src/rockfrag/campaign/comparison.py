@@ -58,7 +58,10 @@ class MeasuredTests:
         return replace(self, overturned=self.overturned[chosen], groups=groups)
 
     def divisions(self) -> Iterator[tuple[int, Flags]]:
-        """Yield for each fold the number of the division and which tests are outside; no fold splits a motion."""
+        """Yield for each fold the number of the division and the tests that choose its trials, shape (tests,).
+
+        No fold splits a motion: motions are dealt to ``folds`` at random, anew for each of ``repeats`` divisions.
+        """
         rng = np.random.default_rng(self.seed)
         for repeat in range(self.repeats):
             fold = rng.permutation(int(self.groups.max()) + 1)[self.groups] % self.folds
@@ -68,14 +71,17 @@ class MeasuredTests:
     def cross_validate(self, simulated: Flags, asked: Flags | None = None) -> Floats:
         """Let trials that are plausible by the tests of other motions vote on each test.
 
-        ``simulated`` are outcomes, shape (trials, tests). ``asked`` is what the plausible trials vote on, if not
-        the outcomes that they are chosen by. Returned is the fraction of plausible trials that say so of each
-        test, shape (repeats, tests).
+        Parameters
+        ----------
+        simulated : outcomes, shape (trials, tests)
+        asked : what the plausible trials vote on, of that shape, if not the outcomes that they are chosen by
+
+        Returns
+        -------
+        Fraction of plausible trials that say so of each test [-], shape (repeats, tests).
         """
-        right, answers = (
-            simulated == self.overturned,
-            simulated if asked is None else asked,
-        )
+        right = simulated == self.overturned
+        answers = simulated if asked is None else asked
         votes = np.empty((self.repeats, len(self.overturned)))
         for repeat, chosen_by in self.divisions():
             voters = plausible_trials(right[:, chosen_by], self.groups[chosen_by])
@@ -83,10 +89,18 @@ class MeasuredTests:
         return votes
 
     def by_threshold(self, measures: Floats) -> Flags:
-        """Outcomes by thresholds on one or two measures that other motions' tests chose, shape (repeats, tests).
+        """Outcomes by thresholds on one or two measures that other motions' tests chose.
 
         On two measures the line of even odds of a probit regression on their logarithms takes the place of the
         threshold.
+
+        Parameters
+        ----------
+        measures : shape (tests,) or (tests, 2)
+
+        Returns
+        -------
+        Whether each test overturns by them, shape (repeats, tests).
         """
         outcomes = np.empty((self.repeats, len(self.overturned)), dtype=bool)
         for repeat, chosen_by in self.divisions():
@@ -103,7 +117,17 @@ class MeasuredTests:
         return outcomes
 
     def agreement(self, name: str, outcomes: Flags) -> dict[str, object]:
-        """Fraction of right outcomes with its interval, and both errors; repeats of the outcomes are averaged."""
+        """Fraction of right outcomes with its interval, and both errors, of a set of outcomes.
+
+        Parameters
+        ----------
+        name : whose they are
+        outcomes : shape (tests,), or (repeats, tests), which are averaged
+
+        Returns
+        -------
+        ``who``, ``right`` with ``lower`` and ``upper`` [-], numbers of ``false_alarms``, ``missed`` and ``tests``.
+        """
         each = np.atleast_2d(outcomes)
         right = (each == self.overturned).mean(axis=0)
         fraction, width = float(right.mean()), self._half_width(right)
@@ -120,9 +144,15 @@ class MeasuredTests:
     def lead(self, ours: Flags, theirs: Flags) -> dict[str, float]:
         """How many more tests are right than by a rival, on the same tests.
 
-        Returns ``better`` (difference of the fractions of right outcomes) with ``better_lower`` and
-        ``better_upper`` and ``p``: two-sided, by changing the sign of whole groups at random (McNemar's test for
-        tests that are not independent).
+        Parameters
+        ----------
+        ours, theirs : outcomes, shape (tests,) or (repeats, tests)
+
+        Returns
+        -------
+        ``better`` (difference of the fractions of right outcomes) with ``better_lower`` and ``better_upper`` [-],
+            and ``p``: two-sided, by changing the sign of whole groups at random (McNemar's test for tests that are
+            not independent).
         """
         right = (np.atleast_2d(ours) == self.overturned).mean(axis=0)
         others = (np.atleast_2d(theirs) == self.overturned).mean(axis=0)
@@ -137,7 +167,7 @@ class MeasuredTests:
         return {"better": mean, **limits, "p": float(found.pvalue)}
 
     def _half_width(self, values: Floats) -> float:
-        """Half the interval of a mean, of Student's t over the groups."""
+        """Half the interval of a mean of values, shape (tests,), by Student's t over the groups."""
         quantile = stats.t.ppf(0.5 + self.level / 2, len(np.unique(self.groups)) - 1)
         return float(quantile * clustered_error(values, self.groups))
 
@@ -146,9 +176,17 @@ class MeasuredTests:
     ) -> pd.DataFrame:
         """Lognormal fragility of the measured and of simulated outcomes, with their ratio.
 
-        ``simulated`` has outcomes by name, or the part of votes to overturn, shape (tests,) each; the bootstrap
-        draws groups whole. A row per set of outcomes: ``who``, ``theta`` and ``beta`` with limits, and, for
-        simulated ones, ``theta_ratio`` and ``beta_ratio`` to the measured curve with limits.
+        The bootstrap draws groups whole.
+
+        Parameters
+        ----------
+        measure : intensity of each test, shape (tests,)
+        simulated : outcomes by name, or the part of votes to overturn [-], shape (tests,) each
+
+        Returns
+        -------
+        A row per set of outcomes: ``who``, ``theta`` in the unit of the measure and ``beta`` [-] with limits, and,
+            for simulated ones, ``theta_ratio`` and ``beta_ratio`` to the measured curve with limits.
         """
         count = int(self.groups.max()) + 1
         draws = np.random.default_rng(self.seed).integers(0, count, (REPLICATES, count))
@@ -174,10 +212,14 @@ class MeasuredTests:
 
 
 def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:
-    """Standard error of a mean whose values share their chance within a group.
+    """Standard error of a mean whose values share their chance within a group; NaN for one group.
 
-    Sum of the groups' deviations (Cameron and Miller, 2015, J. Human Resources 50: 317-372) with the
-    correction G/(G - 1) for G groups; NaN for one group.
+    Sum of the groups' deviations (Cameron and Miller, 2015, J. Human Resources 50: 317-372) with the correction
+    G/(G - 1) for G groups.
+
+    Parameters
+    ----------
+    values, groups : values, and number of each one's group, shape (n,)
     """
     sums = np.bincount(groups, values - values.mean())[np.unique(groups)]
     count = len(sums)
@@ -206,17 +248,24 @@ def plausible_trials(right: Flags, groups: NDArray[np.int64]) -> Flags:
 
 
 def best_threshold(measure: Floats, overturned: Flags) -> float:
-    """Return the value of a measure above which "overturned" is right most often, in the measure's unit."""
+    """Return the value of a measure above which "overturned" is right most often, in the measure's unit.
+
+    It lies in the geometric middle between two tests.
+
+    Parameters
+    ----------
+    measure, overturned : of each test, shape (tests,)
+    """
     order = np.argsort(measure, kind="stable")
     values = measure[order]
     # right outcomes, but for a constant, if the first k tests are taken as survived
     first = int(np.cumsum(np.append(0, 1 - 2 * overturned[order])).argmax())
-    return float(
-        np.sqrt(np.append(values[0], values)[first] * np.append(values, np.inf)[first])
-    )
+    below, above = np.append(values[0], values), np.append(values, np.inf)
+    return float(np.sqrt(below[first] * above[first]))
 
 
 def _design(measures: Floats) -> Floats:
+    """Predictors of a probit: ones and the logarithms of one measure or two, shape (tests, 2 or 3)."""
     return np.column_stack([np.ones(len(measures)), np.log(measures)])
 
 
@@ -257,6 +306,7 @@ def by_region(judged: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
     for thirds in product(range(3), repeat=2):
         inside, row = judged, dict[str, object]()
         for name, k in zip((first, second), thirds, strict=True):
+            # number of the third, from 0, that each test lies in
             third = np.searchsorted(ends[name], inside[name], side="right") - 1
             inside = inside[np.clip(third, 0, 2) == k]
             row[f"{name}_from"], row[f"{name}_to"] = ends[name][k : k + 2]

@@ -98,7 +98,10 @@ def read_campaign(
 def _kinds_of_columns(
     columns: Mapping[str, str], measures: Mapping[str, Sequence[str | float]]
 ) -> dict[str, str]:
-    """What each column of a table of tests holds, by its title, as :func:`read_columns` takes it."""
+    """What each column of a table of tests holds, by its title, as :func:`read_columns` takes it.
+
+    ``columns``: titles by their meaning; ``measures``: columns and numbers whose product each measure is.
+    """
     kinds = {
         part: "positive"
         for recipe in measures.values()
@@ -126,7 +129,10 @@ def _settings_in_words(measures: pd.DataFrame) -> list[str]:
 def _with_outcomes(
     tests: pd.DataFrame, raw: pd.DataFrame, columns: Mapping[str, str], source: str
 ) -> pd.DataFrame:
-    """Add outcome and amplitude; an amplitude of overturning makes one test survived and one overturned."""
+    """Add outcome and amplitude to the tests; an amplitude of overturning makes one test survived and one not.
+
+    ``raw``: the table as read; ``columns``: its titles by their meaning; ``source``: its name in messages.
+    """
     if "overturned" in columns:
         amplitude = raw[columns["amplitude_g"]] if "amplitude_g" in columns else np.nan
         seen = raw[columns["overturned"]].astype(bool)
@@ -135,8 +141,8 @@ def _with_outcomes(
     for key, fell in (("lower_g", False), ("upper_g", True)):
         amplitude = raw[columns[key]]
         names = [
-            f"{test} at {a:g} g"
-            for test, a in zip(tests["test"], amplitude, strict=True)
+            f"{test} at {peak:g} g"
+            for test, peak in zip(tests["test"], amplitude, strict=True)
         ]
         parts.append(
             tests.assign(test=names, amplitude_g=amplitude, **{MEASURED: fell})
@@ -152,7 +158,10 @@ def _with_outcomes(
 def _codes(
     path: str | os.PathLike[str] | None, column: str, tests: "pd.Series[str]"
 ) -> pd.DataFrame:
-    """Outcomes by other programs in the order of the tests, as far as they are given: 1, 0, or NaN for none."""
+    """Outcomes by other programs in the order of the tests: 1, 0, or NaN where none is given.
+
+    ``column``: title of the names of tests in the file; without a file there are no columns.
+    """
     if path is None:
         return pd.DataFrame(index=range(len(tests)))
     source = Path(path).name
@@ -273,7 +282,7 @@ def _archive(source: str) -> Any:
 def _of_archive(
     source: str, names: Sequence[str], unit: str | None, dt: float | None
 ) -> list[Motion]:
-    """The motions of an .npz archive by name, in m/s²."""
+    """The motions of an .npz archive by name, in m/s²; ``unit`` and ``dt`` [s] are those of its arrays."""
     if unit is None or dt is None:
         raise InputError(
             f"{source}: an .npz archive states neither unit nor interval; give unit and dt."

@@ -106,6 +106,7 @@ def mean_limits(values: Floats, groups: NDArray[np.int64]) -> tuple[float, float
     -------
     Lower and upper limit (90 %).
     """
+    # sums of a group vary independently (clustered standard error)
     sums = np.bincount(groups, values - values.mean())
     count = sums.size
     error = np.sqrt((sums**2).sum() * count / max(count - 1, 1)) / values.size

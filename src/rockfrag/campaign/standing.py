@@ -98,7 +98,17 @@ def lognormal(median: float, spread: float) -> Quantile:
 def even_guesses(
     quantiles: Mapping[str, Quantile], count: int, seed: int
 ) -> Iterator[dict[str, float]]:
-    """Yield guesses that fill distributions evenly (scrambled Sobol points), most evenly by a power of two."""
+    """Yield guesses that fill distributions evenly (scrambled Sobol points), most evenly by a power of two.
+
+    Parameters
+    ----------
+    quantiles : quantile function of each unknown
+    count, seed : number of guesses, and where the points start
+
+    Returns
+    -------
+    Values by unknown, a guess after the other.
+    """
     # takes half a second to load, and most objects are no scans
     from scipy.stats import qmc
 
@@ -135,6 +145,7 @@ def sample_trials(
     }
     if "contact_tolerance_mm" in ranges:
         low, high = ranges["contact_tolerance_mm"]
+        # in equal ratios, as it may be small
         quantiles["contact_tolerance_mm"] = lambda fraction: (
             low * (high / low) ** fraction
         )
@@ -229,21 +240,19 @@ def solids_of(thing: Shape, arrangements: Trials, count: int) -> list[System]:
 
     Parameters
     ----------
-    thing, arrangements, count : the object, how it may stand, and how many of these at most
+    thing : the object
+    arrangements : how it may stand, a row each with direction [degrees], tolerance and retreat [mm]
+    count : how many of these are taken, at most
 
     Returns
     -------
     The systems; those in which it would not have been set up, since it falls too easily towards some side, are
-    left out.
+        left out.
     """
     found: list[System] = []
     for guess in arrangements.table.to_dict("records"):
-        tolerance, retreat = (
-            guess["contact_tolerance_mm"] / 1e3,
-            guess["edge_retreat_mm"] / 1e3,
-        )
         with suppress(InputError):
-            body = thing.body(guess["direction_deg"], tolerance, retreat)
+            body = _in_space(thing, guess)
             if least_angle_deg(body) >= LEAST_ANGLE_DEG:
                 found.append(System((body,), (Contact(),)))
         if len(found) == count:
@@ -251,8 +260,14 @@ def solids_of(thing: Shape, arrangements: Trials, count: int) -> list[System]:
     return found
 
 
+def _in_space(shape: Shape, guess: Mapping[Any, Any]) -> RigidBody:
+    """Body of a scanned shape in space, on the points that carry it by a guess."""
+    tolerance, retreat = guess["contact_tolerance_mm"], guess["edge_retreat_mm"]
+    return shape.body(guess["direction_deg"], tolerance / 1e3, retreat / 1e3)
+
+
 def _in_plane(planar: Block | Column, guess: Mapping[str, float]) -> System:
-    """A planar block with the restitution of a guess, as far as it gains no energy."""
+    """Planar block, or the column that it is on top of, with the restitution of a guess that gains no energy."""
     restitution = possible_restitution(planar.blocks[-1], guess["restitution"])
     return system_of(planar, restitution=restitution)
 
@@ -260,18 +275,16 @@ def _in_plane(planar: Block | Column, guess: Mapping[str, float]) -> System:
 def _standing(
     thing: Shape | Block | Column, planar: Block | Column, guess: Mapping[str, float]
 ) -> System:
-    """What stands on the table: planar blocks, or the shape in space on the points that carry."""
+    """What stands on the table: planar blocks, or the shape in space on the points that carry.
+
+    ``planar``: block or column of the ``guess``, values by unknown.
+    """
     if "friction" not in guess:
         return _in_plane(planar, guess)
     if isinstance(thing, Shape):
-        tolerance, retreat = (
-            guess["contact_tolerance_mm"] / 1e3,
-            guess["edge_retreat_mm"] / 1e3,
-        )
-        body = thing.body(guess["direction_deg"], tolerance, retreat)
-        return System(
-            (body,), (Contact(friction=Friction(guess["friction"], guess["friction"])),)
-        )
+        # static and kinetic coefficients are the same
+        friction = Friction(guess["friction"], guess["friction"])
+        return System((_in_space(thing, guess),), (Contact(friction=friction),))
     return system_of(planar, friction=guess["friction"])
 
 
@@ -280,6 +293,7 @@ OUTER, GATHERED = 0.1, 0.25
 
 
 _NOTHING_BEYOND = (("edge_retreat_mm", 0.0), ("restitution", 1.0))
+"""Unknowns and ends of their ranges beyond which there can be nothing."""
 
 
 def preferred_edges(
@@ -336,7 +350,7 @@ def body_of(
 
 
 def _of_size(block: Block, factor: float) -> Block:
-    """A planar block with all its lengths times a factor, of the same material."""
+    """A planar block with all its lengths times a factor [-], of the same material."""
     assert isinstance(block.cg_height, float) and isinstance(block.inertia, float)
     return Block(
         factor * block.width,
@@ -349,7 +363,13 @@ def _of_size(block: Block, factor: float) -> Block:
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:
-    """Return a restitution that gains no energy: as given, or None, which conserves momentum, where it would."""
+    """Return a restitution [-] that gains no energy: as given, or None, which conserves momentum, where it would.
+
+    Parameters
+    ----------
+    block : whose impacts they are
+    restitution : ratio of angular velocities in an impact
+    """
     largest = min(
         geometry.largest_restitution(block.shape, pivot) for pivot in (+1, -1)
     )
@@ -424,18 +444,19 @@ def draw_arrangements(
     """
     rows, systems = [], []
     for guess in even_guesses(unknowns, count, seed):
-        way = dict(known or {}) | guess
+        arrangement = dict(known or {}) | guess
         try:
-            block = body_of(thing, way).blocks[-1]
+            block = body_of(thing, arrangement).blocks[-1]
         except InputError:
             continue
         angle = math.degrees(block.alpha)
         if angle < LEAST_ANGLE_DEG:
             continue
         momentum = min(block.momentum_restitution(+1), block.momentum_restitution(-1))
-        rows.append(way | {"width_m": block.width, "alpha_deg": angle})
+        rows.append(arrangement | {"width_m": block.width, "alpha_deg": angle})
+        # over that which conserves momentum
         ratio = possible_restitution(
-            block, way.get("restitution_ratio", 1.0) * momentum
+            block, arrangement.get("restitution_ratio", 1.0) * momentum
         )
         systems.append(system_of(block, restitution=ratio))
     if not rows:

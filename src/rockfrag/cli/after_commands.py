@@ -171,7 +171,19 @@ def _ground_of(
     about_station: dict[str, Any],
     shakemap: "ShakeMap | None",
 ) -> "tuple[Ground, tuple[Motion, ...]]":
-    """What shook a place, by the one way that the command line gives, and the record if that is one."""
+    """What shook a place, by the one way that the command line gives.
+
+    Parameters
+    ----------
+    options : of the command line
+    typed : levels that were typed, empty without any
+    about_station : what a station's record needs beside it
+    shakemap : the map, if one was given
+
+    Returns
+    -------
+    A function that gives the shaking of a place, and the motions of a record if that is the way.
+    """
     if shakemap is not None:
         return _by_map(options, shakemap), ()
     if typed:

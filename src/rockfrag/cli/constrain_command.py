@@ -171,7 +171,11 @@ def _mapped(options: argparse.Namespace) -> "Prior":
 
 
 def _typed(given: list[str] | None, measure: str) -> tuple[float, float]:
-    """Median and standard deviation of ln of what was typed; NaN where nothing was."""
+    """Level and standard deviation that were typed for a measure; NaN and NaN where nothing was.
+
+    ``given``: two words, a level with its unit and the standard deviation of ln. Returned is the level, a median
+    [cm/s for PGV, g for PGA], and that standard deviation [-].
+    """
     from rockfrag.assess.hazard.curve import read_level, read_measure
 
     if given is None:

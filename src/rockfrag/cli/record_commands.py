@@ -110,7 +110,10 @@ def read_as_asked(
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for ObsPy
 def _info(options: argparse.Namespace) -> int:
-    """Run ``info``: print what is in records, and draw one."""
+    """Run ``info``: print what is in records, and draw one of them, or all.
+
+    Returned is the exit code: 1 if a file cannot be read, or one that was named is no record, otherwise 0.
+    """
     from rockfrag.base.files import csv_text
     from rockfrag.report import record_info
 
@@ -137,6 +140,7 @@ def _info(options: argparse.Namespace) -> int:
             options.files, options.pictures, options.unit, options.dt, options.force
         )
         print(f"{len(drawn)} pictures drawn in {options.pictures}", file=sys.stderr)
+    # of a folder, files that are no records are no fault
     named = table["file"].isin([printable(str(Path(file))) for file in options.files])
     status = table["status"]
     bad = (status == record_info.UNREADABLE) | ((status != record_info.READ) & named)

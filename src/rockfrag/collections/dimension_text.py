@@ -455,7 +455,16 @@ def _rank_of_part(part: str) -> int:
 
 
 def _read_phrase(words: str, part: str) -> _Phrase:
-    """Read the lengths, the mass and the order of one piece."""
+    """Read the lengths, the mass and the order of sides of one piece.
+
+    Every term is a number or a range with the word for its side and its unit; it is a mass, the rest of the length
+    before it (5 ft 3 in), or a length of its own.
+
+    Parameters
+    ----------
+    words : of the piece
+    part : what it is of, empty for the whole object
+    """
     order: tuple[str, ...] = ()
     if alone := _ORDER_ALONE.search(words):
         order = tuple(re.findall(rf"(?<!\w)(?:{_ORDER})(?!\w)", alone[1]))

@@ -329,7 +329,14 @@ def _of_numbers(
 
 
 def _own_name(title: str, number: str, line: int, taken: set[str]) -> str:
-    """A name that no row above bears, that shows in tables and gives a file name of its own."""
+    """A name that no row above bears, that shows in tables and gives a file name of its own.
+
+    Parameters
+    ----------
+    title, number : of the object; its number in the collection tells two of one title apart
+    line : of the table, for an object without a title
+    taken : folded file names of the rows above; that of this row is added
+    """
     words = "".join(c if c.isprintable() else " " for c in title)
     words = " ".join(words.split()).lstrip("".join(FORMULA)).strip() or f"line {line}"
     suffix = f" ({' '.join(number.split())})" if number and number.isprintable() else ""

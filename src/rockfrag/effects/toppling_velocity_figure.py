@@ -115,7 +115,14 @@ def _draw_ratios(panel: Axes, fell: pd.DataFrame, pieces: pd.DataFrame) -> None:
 
 
 def _draw_band(panel: Axes, some: pd.DataFrame, colour: str) -> None:
-    """Limits over earthquakes of the sizes of a standing, by thirds of the slenderness."""
+    """Shade the limits over earthquakes of the sizes of a standing, averaged by quarters of the slenderness.
+
+    Parameters
+    ----------
+    panel : of ratios over Kaneko's velocity by height over width
+    some : a row a size, with ``height_m``, ``width_m``, ``lower``, ``upper`` and ``kaneko_m_s``
+    colour : of the standing
+    """
     slender: Floats = (some["height_m"] / some["width_m"]).to_numpy()
     order = np.argsort(slender)
     for part in np.array_split(order, 4):

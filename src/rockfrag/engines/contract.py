@@ -127,7 +127,10 @@ class Cases:
 
 
 def with_all_components(motions: Sequence[GroundMotion]) -> GroundMotion:
-    """A still ground with the components, and the jumps of the velocity, that any of the motions has."""
+    """A still ground with all that any of the motions has, to ask engines with: which of them support all motions.
+
+    That is its components, and the jumps of the velocity of the first that has some.
+    """
     still = Motion(np.zeros(1), 1.0)
     return GroundMotion(
         still,

@@ -39,7 +39,18 @@ def fastest_frequency(system: System | Body, g: float) -> float:
 
 
 def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.int64]:
-    """Return the most samples of free rocking that are followed after a motion, for every interval."""
+    """Return the most samples of free rocking that are followed after a motion, for every interval.
+
+    Parameters
+    ----------
+    system : planar
+    dt : sampling intervals [s], shape (motions,) or a number
+    g : acceleration of gravity [m/s²]
+
+    Returns
+    -------
+    Numbers of samples, of the shape of ``dt``.
+    """
     shapes = rocking_shapes(as_system(system))
     slowest = min(
         geometry.frequency(shape, pivot, g) for shape in shapes for pivot in (+1, -1)

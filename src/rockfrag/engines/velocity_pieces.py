@@ -70,7 +70,10 @@ def pieces_of(case: Case) -> Iterator[Piece]:
 
 
 def _between(now: float, end: float, dt: float) -> Iterator[tuple[float, float]]:
-    """Parts of an interval: up to the next sample, whole samples, and what is left."""
+    """Yield the parts of an interval, ends in seconds: up to the next sample, whole samples, and what is left.
+
+    ``now``, ``end``: of the interval [s]; ``dt``: sampling interval [s].
+    """
     first, last = math.ceil(now / dt - INSTANT), math.floor(end / dt + INSTANT)
     within = [] if first > last else [first * dt, last * dt]
     for begin, until in pairwise([now, *within, end]):
@@ -101,6 +104,6 @@ def _piece(
 
 
 def _at(motion: Motion, times: Floats) -> Floats:
-    """Acceleration at instants, zero from one sample after the last on."""
+    """Acceleration [m/s²] of a motion at instants [s], of their shape; zero from one sample after the last on."""
     values = np.append(motion.acceleration, 0.0)
     return np.asarray(np.interp(times / motion.dt, np.arange(values.size), values))

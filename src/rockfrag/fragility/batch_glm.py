@@ -33,7 +33,18 @@ class BatchFit:
 
 
 def log_terms(eta: Floats, link: Link) -> tuple[Floats, Floats, Floats, Floats]:
-    """Logarithms of p, 1 - p and the density, and d ln w / d eta, w the working weight of one test."""
+    """Logarithms of what the likelihood of one test is made of.
+
+    Parameters
+    ----------
+    eta : linear predictor, any shape
+    link : of the regression
+
+    Returns
+    -------
+    ln p, ln(1 - p), ln of the density dp/d eta, and d ln w / d eta with the working weight w; shape of ``eta``
+        each.
+    """
     if link == "logit":
         log_p = -np.logaddexp(0.0, -eta)
         log_q = -np.logaddexp(0.0, eta)
@@ -125,7 +136,10 @@ class _Evaluated(NamedTuple):
 def _evaluated(
     design: Floats, failures: Floats, trials: Floats, coefficients: Floats, link: Link
 ) -> _Evaluated:
-    """Likelihood and information of regressions at coefficients, shape (batch, k)."""
+    """Likelihood and information of regressions at coefficients, shape (batch, k).
+
+    ``design``: shape (rows, k); ``failures``, ``trials``: shape (batch, rows).
+    """
     rows, columns = design.shape
     eta = np.clip(coefficients @ design.T, -_LARGEST_PREDICTOR, _LARGEST_PREDICTOR)
     log_p, log_q, log_density, weight_slope = log_terms(eta, link)
@@ -145,7 +159,10 @@ def _evaluated(
 def _next_steps(
     design: Floats, at: _Evaluated, chosen: NDArray[np.int64], *, penalised: bool
 ) -> Floats:
-    """Steps of Fisher's scoring of the ``chosen`` regressions, shape (chosen, k); Firth's if ``penalised``."""
+    """Steps of Fisher's scoring of the ``chosen`` regressions, shape (chosen, k); Firth's if ``penalised``.
+
+    Firth's score has half the leverage of each test times the slope of ln w added.
+    """
     inverse = np.linalg.pinv(at.information[chosen], hermitian=True)
     score = at.score[chosen]
     if penalised:
@@ -171,6 +188,7 @@ def separated(log_im: Floats, failures: Floats, trials: Floats) -> NDArray[np.bo
     fell, stood = failures > 0, trials - failures > 0
 
     def extreme(mask: NDArray[np.bool_], sign: float) -> Floats:
+        """Largest ``sign`` times ln IM among the tests of a mask, shape (batch,)."""
         return np.asarray(np.where(mask, sign * log_im, -np.inf).max(axis=1))
 
     upward = extreme(stood, 1.0) <= -extreme(fell, -1.0)

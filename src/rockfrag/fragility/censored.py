@@ -236,7 +236,7 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
 
     Returns
     -------
-    Shape (batch, 2).
+    Coefficients, shape (batch, 2).
     """
     left, right = _shared(low, high, weights)
     if (left <= right).any():
@@ -254,7 +254,11 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
 
 
 def _shared(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats]:
-    """Ends of the range that all brackets with a weight share, shape (batch,) each; crossed if there is none."""
+    """Ends of the range of ln amplitude that all brackets with a weight share, shape (batch,) each.
+
+    They are crossed, left above right, if there is none. ``low``, ``high``: shape (n,); ``weights``: shape (batch,
+    n).
+    """
     used = weights > 0
     left = np.where(used, low, -np.inf).max(axis=1)
     return left, np.where(used, high, np.inf).min(axis=1)
@@ -270,7 +274,11 @@ class _Fits(NamedTuple):
 
 
 def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> _Fits:
-    """Fit (intercept, slope) for each row of weights, shape (batch, n)."""
+    """Fit (intercept, slope) to brackets of ln amplitude, shape (n,), for each row of weights, shape (batch, n).
+
+    Where all brackets share a range the likelihood has no maximum, and its middle and width make a curve
+    (:func:`fit_brackets`).
+    """
     batch = len(weights)
     fits = _Fits(
         np.full((batch, 2), np.nan),
@@ -297,9 +305,15 @@ def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> _Fits:
 def _common_bracket(
     left: Floats, right: Floats, any_closed: NDArray[np.bool_]
 ) -> Floats:
-    """Middle and width / √12 of the amplitudes that all brackets share, as intercept and slope, (batch, 2).
+    """Intercept and slope, shape (batch, 2), from the ranges of ln amplitude that all brackets share.
 
-    There is no curve where all are open and end at one amplitude: some are below, some above, and any β will do.
+    The median is the middle and β the width / √12. There is no curve where all are open and end at one amplitude:
+    some are below, some above, and any β will do.
+
+    Parameters
+    ----------
+    left, right : ends of the ranges, shape (batch,)
+    any_closed : whether some bracket is closed at both ends, shape (batch,)
     """
     closed = np.isfinite(left) & np.isfinite(right)
     # equal amplitudes share a bracket of no width; 1e-6 keeps 1/β a number
@@ -323,6 +337,8 @@ _FLAT = 0.1 * lognormal.LEAST_SLOPE
 def _newton(low: Floats, high: Floats, weights: Floats) -> _Fits:
     """Maximise the likelihood of each row of weights by Newton's method with halved steps.
 
+    A row is done when its coefficients settle, or its slope sinks below that of a curve; the others go on.
+
     Parameters
     ----------
     low, high : logarithms of the bounds, shape (n,)
@@ -335,6 +351,7 @@ def _newton(low: Floats, high: Floats, weights: Floats) -> _Fits:
         step = np.einsum(
             "bij,bj->bi", np.linalg.pinv(-at.hessian[active]), at.score[active]
         )
+        # fraction of its step that each active row takes, and the rows whose step does not help yet
         size = np.ones(active.size)
         waiting = np.arange(active.size)
         for _ in range(_MOST_HALVINGS):
@@ -393,7 +410,14 @@ class _Likelihood(NamedTuple):
 def _likelihood(
     low: Floats, high: Floats, weights: Floats, coefficients: Floats
 ) -> _Likelihood:
-    """Log-likelihood and derivatives in (intercept, slope), for each row of weights."""
+    """Log-likelihood of lognormal capacities with known bounds, and its derivatives, for each row of weights.
+
+    Parameters
+    ----------
+    low, high : bounds of ln capacity, shape (n,)
+    weights : of each capacity in each sample of the bootstrap, shape (batch, n)
+    coefficients : intercept and slope of each sample, by which derivatives are taken, shape (batch, 2)
+    """
     terms = _terms(low, high, coefficients)
     sums = _Terms._make((weights * term).sum(axis=1) for term in terms)
     hessian = np.stack([sums.h00, sums.h01, sums.h01, sums.h11], axis=1)
@@ -408,15 +432,20 @@ class _Terms(NamedTuple):
     """Log-likelihood of each bracket and its derivatives in (intercept, slope), each of shape (batch, n)."""
 
     value: Floats
+    # first derivatives in intercept and slope
     score0: Floats
     score1: Floats
+    # second derivatives in (intercept, intercept), (intercept, slope) and (slope, slope)
     h00: Floats
     h01: Floats
     h11: Floats
 
 
 def _terms(low: Floats, high: Floats, coefficients: Floats) -> _Terms:
-    """Terms of the likelihood: of the density for equal bounds, else of the probability between them."""
+    """Terms of the likelihood: of the density for equal bounds, else of the probability between them.
+
+    ``low``, ``high``: logarithms of the bounds, shape (n,); ``coefficients``: shape (batch, 2).
+    """
     exact = low == high
     of_density = _density_terms(low, coefficients)
     if exact.all():
@@ -429,7 +458,10 @@ def _terms(low: Floats, high: Floats, coefficients: Floats) -> _Terms:
 
 
 def _density_terms(low: Floats, coefficients: Floats) -> _Terms:
-    """Terms of amplitudes known exactly: of the density of ln IM, so that narrow brackets rank models alike."""
+    """Terms of amplitudes known exactly, ln density at x = ln IM: ln c1 - (c0 + c1 x)²/2.
+
+    It is of ln IM, so that narrow brackets rank models alike.
+    """
     c0, c1 = coefficients[:, :1], coefficients[:, 1:]
     x = np.where(np.isfinite(low), low, 0.0)
     at = c0 + c1 * x
@@ -445,31 +477,35 @@ def _density_terms(low: Floats, coefficients: Floats) -> _Terms:
 
 
 def _fraction_terms(low: Floats, high: Floats, coefficients: Floats) -> _Terms:
-    """Terms of amplitudes between two bounds, either of which may be infinite."""
+    """Terms of amplitudes between two bounds, ln(Φ(c0 + c1 x_high) - Φ(c0 + c1 x_low)); either may be infinite."""
     c0, c1 = coefficients[:, :1], coefficients[:, 1:]
     x_low = np.where(np.isfinite(low), low, 0.0)
     x_high = np.where(np.isfinite(high), high, 0.0)
     z_low = np.where(np.isneginf(low), -np.inf, c0 + c1 * x_low)
     z_high = np.where(np.isposinf(high), np.inf, c0 + c1 * x_high)
     log_fraction = _log_difference(z_low, z_high)
+    # density at each bound over the probability, and that times the bound, whose derivatives these are
     ratio_low = np.exp(-0.5 * z_low**2 - _LOG_ROOT_TWO_PI - log_fraction)
     ratio_high = np.exp(-0.5 * z_high**2 - _LOG_ROOT_TWO_PI - log_fraction)
     bend_low = np.where(np.isinf(z_low), 0.0, z_low) * ratio_low
     bend_high = np.where(np.isinf(z_high), 0.0, z_high) * ratio_high
-    g0 = ratio_high - ratio_low
-    g1 = ratio_high * x_high - ratio_low * x_low
+    score0 = ratio_high - ratio_low
+    score1 = ratio_high * x_high - ratio_low * x_low
     return _Terms(
         value=log_fraction,
-        score0=g0,
-        score1=g1,
-        h00=bend_low - bend_high - g0**2,
-        h01=bend_low * x_low - bend_high * x_high - g0 * g1,
-        h11=bend_low * x_low**2 - bend_high * x_high**2 - g1**2,
+        score0=score0,
+        score1=score1,
+        h00=bend_low - bend_high - score0**2,
+        h01=bend_low * x_low - bend_high * x_high - score0 * score1,
+        h11=bend_low * x_low**2 - bend_high * x_high**2 - score1**2,
     )
 
 
 def _log_difference(z_low: Floats, z_high: Floats) -> Floats:
-    """Return ln(Φ(z_high) - Φ(z_low)) without loss of digits; 0 where the bounds are equal."""
+    """Return ln(Φ(z_high) - Φ(z_low)) without loss of digits; 0 where the bounds are equal.
+
+    ``z_low``, ``z_high``: bounds in standard deviations, of one shape, which is returned.
+    """
     # above the middle in the other tail, where probabilities are small and keep their digits
     with np.errstate(invalid="ignore"):
         flip = z_low + z_high > 0

@@ -79,7 +79,15 @@ def check_notes(
 
 
 def _rejection(unit: str, level: float, p_fit: float, fractions: Fractions) -> str:
-    """Sentence that the lognormal curve is rejected, with what to use instead."""
+    """Sentence that the lognormal curve is rejected, with what to use instead.
+
+    Parameters
+    ----------
+    unit : of the measure
+    level : confidence level of the limits [-]
+    p_fit : p value of the test that rejects it [-]
+    fractions : the nonparametric curve
+    """
     words = f"The lognormal curve is rejected (p = {p_fit:.3f}): use the nonparametric monotone curve"
     if math.isnan(fractions.theta):
         return f"{words}, which does not reach a half."

@@ -120,7 +120,11 @@ def goodness_of_fit(
 def _calibration(
     im: Floats, trials: Floats, expected: Floats, observed: Floats
 ) -> pd.DataFrame:
-    """Predicted and observed fraction of each bin, with limits; numbers of tests that overturn, shape (bins,)."""
+    """Table of ``GoodnessOfFit.calibration``: predicted and observed fraction of each bin, with limits.
+
+    ``im``: mean of the measure; ``trials``: tests; ``expected``, ``observed``: numbers that overturn; shape
+    (bins,) each.
+    """
     lower, upper = wilson_interval(observed, trials)
     return pd.DataFrame(
         {
@@ -179,7 +183,12 @@ def _drawn_outcomes(
 ) -> Floats:
     """Numbers that overturn in each cell when the fit is true, shape (replicates, cells).
 
-    ``dependence`` as in :func:`goodness_of_fit`.
+    Parameters
+    ----------
+    outcomes, fit : tests and their curve
+    cell : number of each test's cell, shape (rows,)
+    replicates, rng : number of simulated data sets, and where random numbers come from
+    dependence : as in :func:`goodness_of_fit`
     """
     if dependence == "motions":
         law = rng.normal if fit.link == "probit" else rng.logistic
@@ -317,7 +326,16 @@ def checks_of_outcomes(
 def checks_of_brackets(
     brackets: Brackets, fit: FragilityFit, interval: Interval
 ) -> Checks:
-    """Judge a lognormal capacity fitted to brackets, by Lilliefors' test of the middles of ln amplitude."""
+    """Judge a lognormal capacity fitted to brackets, by Lilliefors' test of the middles of ln amplitude.
+
+    Parameters
+    ----------
+    brackets, fit, interval : bounds of n amplitudes, the curve fitted to them, and its limits
+
+    Returns
+    -------
+    The :class:`Checks`; without a test where brackets are open or too few.
+    """
     lower, upper = brackets.lower, brackets.upper
     closed = np.isfinite(upper) & (lower > 0)
     middle = 0.5 * np.log(lower[closed] * upper[closed])
@@ -349,7 +367,13 @@ def _largest(residuals: Floats) -> float:
 def most_influential(
     interval: Interval, groups: NDArray[np.object_]
 ) -> tuple[str, float]:
-    """Group without which θ changes most, and θ without it over θ; empty and NaN without a jackknife."""
+    """Name of the group without which θ changes most, and θ without it over θ; empty and NaN without a jackknife.
+
+    Parameters
+    ----------
+    interval : of the curve, with its coefficients without each group
+    groups : label of each test's group, shape (tests,)
+    """
     names = pd.factorize(pd.Series(groups))[1]
     refits = interval.replicates
     if (

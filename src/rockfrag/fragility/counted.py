@@ -59,7 +59,10 @@ class CountedObservations(Observations):
         return self.pooled(cell, values)
 
     def group_weights(self, weights: Floats) -> Floats:
-        """Weights of the blocks of motions, all of whose motions or earthquakes must weigh the same."""
+        """Weights of the blocks of motions, shape (batch, blocks), from those of groups, shape (batch, groups).
+
+        All groups of a block must weigh the same.
+        """
         block = self.of.block
         first = np.unique(block, return_index=True)[1]
         found = weights[:, first]
@@ -86,14 +89,19 @@ class CountedObservations(Observations):
         return count, float(count)
 
     def drawn(self, capacity: Floats, cell: NDArray[np.intp]) -> Floats:
-        """See :class:`Observations`; ``cell`` rises with the measure."""
+        """Outcomes by cell where each motion has one capacity [ln IM], see :class:`Observations`.
+
+        ``cell`` rises with the measure, so that a cell is a range of ln IM. The tests of a motion in it that lie
+        above its capacity fall: all below the end of the range, less those below its beginning or the capacity.
+        """
         values, first = np.unique(self.im, return_index=True)
         starts = np.flatnonzero(np.diff(cell[first], prepend=-1))
         ends = np.append(self._edge_below(values[starts[1:]]), np.inf)
         rise, scale = self.of.rise, self.of.scale
-        # a motion's amplitudes below the beginning of every cell and in all; those up to its capacity stand
+        # of each motion, numbers of amplitudes below the ends of the ranges, shape (cells + 1, motions)
         before = [np.searchsorted(rise, end - scale) for end in ends]
         below = np.array([np.zeros(scale.size, dtype=np.intp), *before])
+        # and numbers of those up to its capacity, which stand, shape (replicates, motions)
         stood = np.searchsorted(rise, capacity - scale, side="right")
         fallen = [
             np.diff(np.maximum(below, of_motion).sum(axis=1)) for of_motion in stood
@@ -211,12 +219,19 @@ class _Counts:
         self.total = np.zeros(CELLS)
 
     def add(self, rows: NDArray[np.intp], overturned: NDArray[np.bool_]) -> None:
-        """Count outcomes, (n, amplitudes), of the motions in ``rows``, (n,)."""
+        """Count outcomes of motions.
+
+        Parameters
+        ----------
+        rows : numbers of the motions, shape (n,); those on other floors are left out
+        overturned : shape (n, amplitudes)
+        """
         used = self.of_motion[rows] >= 0
         own = self.of_motion[rows][used]
         log_im = self.scale[own, np.newaxis] + self.rise
         width = (self.edges[-1] - self.edges[0]) / CELLS
         cell = np.clip(((log_im - self.edges[0]) / width).astype(np.intp), 0, CELLS - 1)
+        # place of each test in the table of blocks and cells
         flat = self.row[own, np.newaxis] * CELLS + cell
         self.trials += self._by_cell(flat.ravel())
         self.fell += self._by_cell(flat[overturned[used]])

@@ -84,8 +84,10 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
 
 
 def _beta_limits(row: Mapping[Hashable, Any]) -> str:
-    """Limits of β in words; a lower one of zero is not resolved."""
+    """Limits of β [-] in words, "at most …" where β itself is the upper one and the lower one is zero."""
     lower, upper = row["beta_lower"], row["beta_upper"]
+    # tests in one common step allow any β up to the most that the step could hide (``intervals.step_limits``);
+    # where β is that, or unknown, nothing but this bound is known of it
     if lower <= 0 and upper <= row.get("beta", math.inf):
         return f"at most {upper:.4g} (not resolved)"
     return f"{lower:.4g} to {upper:.4g}"

@@ -14,7 +14,7 @@ import re
 from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -99,7 +99,16 @@ def curves_by_name(
     *,
     model_error: bool = False,
 ) -> dict[str, dict[str, StateCurve]]:
-    """Curves of a fragility table by the identifier of column ``by`` and by limit state, the milder first."""
+    """Curves of a fragility table by identifier and by limit state, the milder first.
+
+    Parameters
+    ----------
+    table : a row a curve
+    by : column whose texts become identifiers
+    fractions : points of curves that are not lognormal, a row a point; None without any
+    naming : of the export, with its rules for identifiers
+    model_error : whether β of overturning gets the error of the model as well
+    """
     export = naming.export
     if table.empty:
         raise InputError(
@@ -140,7 +149,10 @@ def curves_by_name(
 def _points_of(
     fractions: pd.DataFrame | None, by: str, name: str, state: str
 ) -> Floats:
-    """Levels and observed fractions of one object and limit state, shape (n, 2); none without fractions."""
+    """Levels and observed fractions of one object and limit state, shape (n, 2); no rows without fractions.
+
+    ``by``: column of the object's name.
+    """
     if fractions is None:
         return np.empty((0, 2))
     own = (fractions[by].astype(str) == name) & (fractions["state"] == state)
@@ -192,7 +204,12 @@ _FACTORS = {
 
 
 def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
-    """OpenQuake's name of a measure and the factor to its unit (g, cm/s)."""
+    """OpenQuake's name of a measure and the factor to its unit (g, cm/s).
+
+    Parameters
+    ----------
+    name, unit : of the measure, as the field writes it
+    """
     measure = measure_labelled(name)
     if measure is None or not measure.openquake:
         known = ", ".join(
@@ -348,7 +365,11 @@ def _function(
 def _nested(
     states: Mapping[str, StateCurve], factor: float
 ) -> tuple[Floats, dict[str, Floats], float]:
-    """Levels, the chance of each state there, never above that of the state before, and by how much it was."""
+    """Chances of limit states at common levels, each never above that of the milder state before.
+
+    ``factor``: from the unit of the curves to that of the file. Returned are the levels, shape (n,), the chances
+    by state, shape (n,), and by how much a chance had to be lowered at most [-].
+    """
     parts = [
         curve.theta * factor * np.exp(curve.beta * _STEPS) for curve in states.values()
     ]
@@ -379,11 +400,18 @@ BEYOND = 2.0
 """Where a non-parametric fragility function that ends below 1 reaches it, as a multiple of its last level."""
 
 
-def _demands() -> dict[str, tuple[str, dict[str, str]]]:
-    """Name and units of each demand, by what curves call the measure at the ground and on a floor."""
+class _Demand(NamedTuple):
+    """A measure as SimCenter knows it."""
+
+    name: str  # such as ``Peak Ground Acceleration``
+    units: Mapping[str, str]  # its names of the units that curves may have
+
+
+def _demands() -> dict[str, _Demand]:
+    """Demands by what curves call the measure, at the ground and on a floor."""
     known = [measure for measure in declared() if measure.demand]
     return {
-        label: (f"Peak {place} {measure.demand}", _DEMAND_UNITS[measure.unit])
+        label: _Demand(f"Peak {place} {measure.demand}", _DEMAND_UNITS[measure.unit])
         for measure in known
         for label, place in ((measure.label, "Ground"), (measure.floor_label, "Floor"))
         if label
@@ -434,51 +462,64 @@ def write_simcenter(
 def _component(
     identifier: str, states: Mapping[str, StateCurve], by: str
 ) -> tuple[dict[str, object], dict[str, object]]:
-    """Row of the table and entry of the notes of what has curves of some limit states."""
-    known, demands, said = _demands(), set(), []
-    limit_states: dict[str, object] = {}
-    parameters: dict[str, object] = {}
+    """Row of the table and entry of the notes of what has curves of some limit states.
+
+    Parameters
+    ----------
+    identifier : of the component
+    states : its curves by limit state, the milder first
+    by : column of a curve's row that names it
+    """
+    about: dict[str, object] = {"ID": identifier, "Incomplete": 0}
+    demand, unit = _demand_of(identifier, states)
+    about |= {"Demand-Type": demand, "Demand-Unit": unit}
+    # the curves are for one horizontal component; a block falls about either of its edges
+    about |= {"Demand-Offset": 0, "Demand-Directional": 1}
+    limit_states, said = {}, []
     for number, (state, curve) in enumerate(states.items(), start=1):
-        row, levels, fraction = curve.row, curve.levels, curve.fraction
-        im, unit = str(row["im"]), str(row["unit"])
-        if im not in known or unit not in known[im][1]:
-            raise InputError(
-                f"SimCenter: {im} in {unit or 'no unit'} is no demand of this export; choose PGA or PFA "
-                "in g, PGV or PFV in cm/s."
-            )
-        demands.add((known[im][0], known[im][1][unit]))
-        parameters |= {
-            f"LS{number}-{key}": value for key, value in _family(curve).items()
-        }
+        about |= {f"LS{number}-{key}": value for key, value in _family(curve).items()}
         reached = limit_state_named(state)
         words = reached.damage or reached.label
         damage = {"Description": words, "RepairAction": reached.repair}
         limit_states[f"LS{number}"] = {f"DS{number}": damage}
-        facts = curve_facts(row)
-        if levels.size and fraction[-1] < 1.0:
-            facts += f" Beyond {levels[-1]:.4g} {unit} nothing was tried: all is put at {BEYOND:g} times it."
-        said.append(f"{words}: {facts} {curve.holds}".rstrip())
-    if len(demands) > 1:
-        raise InputError(
-            f"SimCenter: the limit states of {identifier} have two demands; choose one."
-        )
-    ((demand, demand_unit),) = demands
-    about = {
-        "ID": identifier,
-        "Incomplete": 0,
-        "Demand-Type": demand,
-        "Demand-Unit": demand_unit,
-    }
-    # the curves are for one horizontal component; a block falls about either of its edges
-    line = {**about, "Demand-Offset": 0, "Demand-Directional": 1, **parameters}
+        said.append(f"{words}: {_facts(curve)} {curve.holds}".rstrip())
+    last = list(states.values())[-1]
     note: dict[str, object] = {
-        "Description": f"Free-standing {row[by]}",
+        "Description": f"Free-standing {last.row[by]}",
         "Comments": " ".join(said),
         "SuggestedComponentBlockSize": "1 EA",
         "RoundUpToIntegerQuantity": "True",
         "LimitStates": limit_states,
     }
-    return line, note
+    return about, note
+
+
+def _demand_of(identifier: str, states: Mapping[str, StateCurve]) -> tuple[str, str]:
+    """Name and unit, as SimCenter has them, of the one demand that all limit states have."""
+    known, demands = _demands(), set()
+    for curve in states.values():
+        im, unit = str(curve.row["im"]), str(curve.row["unit"])
+        if im not in known or unit not in known[im].units:
+            raise InputError(
+                f"SimCenter: {im} in {unit or 'no unit'} is no demand of this export; choose PGA or PFA "
+                "in g, PGV or PFV in cm/s."
+            )
+        demands.add((known[im].name, known[im].units[unit]))
+    if len(demands) > 1:
+        raise InputError(
+            f"SimCenter: the limit states of {identifier} have two demands; choose one."
+        )
+    ((demand, demand_unit),) = demands
+    return demand, demand_unit
+
+
+def _facts(curve: StateCurve) -> str:
+    """Facts of a curve in words, and where its points end below 1 what stands beyond them."""
+    facts = curve_facts(curve.row)
+    if curve.levels.size and curve.fraction[-1] < 1.0:
+        unit = str(curve.row["unit"])
+        facts += f" Beyond {curve.levels[-1]:.4g} {unit} nothing was tried: all is put at {BEYOND:g} times it."
+    return facts
 
 
 def _family(curve: StateCurve) -> dict[str, object]:

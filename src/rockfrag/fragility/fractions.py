@@ -223,7 +223,7 @@ def _fractions(
 
 
 def _median(im: Floats, fraction: Floats) -> float:
-    """Value at which the curve passes one half; NaN where it does not."""
+    """Value of the measure at which the never-falling fraction passes one half; NaN where it does not."""
     if not fraction[0] <= 0.5 <= fraction[-1]:
         return float("nan")
     at, value = knots_of(im, fraction)
@@ -231,7 +231,10 @@ def _median(im: Floats, fraction: Floats) -> float:
 
 
 def _rising(fell: Floats, total: Floats) -> Floats:
-    """Never-falling fraction; where nothing was tried that of the value before, 0 before the first."""
+    """Never-falling fraction, shape (values,); where nothing was tried that of the value before, or 0.
+
+    ``fell``, ``total``: numbers of tests that overturned, and of all, shape (values,).
+    """
     tried = total > 0
     if not tried.any():
         return np.zeros(total.shape)
@@ -246,7 +249,11 @@ def _rising(fell: Floats, total: Floats) -> Floats:
 
 
 def _witnesses(fraction: Floats, total: Floats) -> Floats:
-    """Groups that bear witness to a fraction of 0 (none fell there or above) or 1, shape (values,)."""
+    """Groups that bear witness to a fraction of 0 or 1, shape (values,).
+
+    To 0 a group does that has a test there or at a larger value at which none fell; to 1 one that has a test there
+    or at a smaller value at which all fell. ``total``: tests, shape (groups, values).
+    """
     tried, none, every = total > 0, fraction <= 0.0, fraction >= 1.0
     above = np.logical_or.accumulate((tried & none)[:, ::-1], axis=1)[:, ::-1].sum(
         axis=0
@@ -262,8 +269,17 @@ def _limits(
     motions: int,
     level: float,
 ) -> tuple[Floats, Floats]:
-    """Pointwise limits of fractions with a standard error over groups."""
+    """Pointwise limits of fractions (Korn and Graubard, as at the head of the module), shape (values,) each.
+
+    Parameters
+    ----------
+    fraction, error : fractions and their standard errors over groups [-], shape (values,)
+    witnesses : number of groups that bear witness to a fraction of 0 or 1, shape (values,) or one number
+    motions : number of motions, the most that trials can count
+    level : two-sided confidence level [-]
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
+        # of a binomial fraction with that variance
         trials = np.where(error > 0, fraction * (1.0 - fraction) / error**2, np.inf)
     certain = (fraction <= 0.0) | (fraction >= 1.0)
     trials = np.where(certain, witnesses, np.minimum(trials, motions))
@@ -277,7 +293,16 @@ def _limits(
 
 
 def _dispersion(middle: Floats, fraction: Floats, motions: float) -> float:
-    """Half the distance between the 16 % and the 84 % point of Harrell and Davis."""
+    """Half the distance in ln IM between the 16 % and the 84 % point; NaN where the fraction does not reach them.
+
+    A point is a mean of the values, weighted as Harrell and Davis (1982) do by the beta distribution of that order
+    statistic of so many ``motions``.
+
+    Parameters
+    ----------
+    middle : where the capacities between two values lie [ln IM], shape (values,)
+    fraction : never-falling fractions [-], shape (values,)
+    """
     if not (fraction[0] <= ENDS[0] and fraction[-1] >= ENDS[1]):
         return float("nan")
     points = []

@@ -93,7 +93,12 @@ def capacity_scores(brackets: Brackets, group: NDArray[np.intp]) -> Floats:
 
 
 def paired_p(best: Floats, other: Floats) -> float:
-    """Two-sided p value of equal mean scores, t over the groups [-]; 1 where all agree."""
+    """Two-sided p value of equal mean scores, t over the groups [-]; 1 where all agree, NaN of one group.
+
+    Parameters
+    ----------
+    best, other : log scores by group, shape (groups,)
+    """
     difference = best - other
     if difference.size < 2 or np.isnan(difference).any():
         return float("nan")
@@ -103,7 +108,13 @@ def paired_p(best: Floats, other: Floats) -> float:
 
 
 def fraction_best(scores: Floats, replicates: int, seed: int) -> Floats:
-    """Fraction of bootstrap samples in which each measure scores best, from log scores (measures, groups)."""
+    """Fraction of bootstrap samples of the groups in which each measure scores best, shape (measures,).
+
+    Parameters
+    ----------
+    scores : log scores, shape (measures, groups)
+    replicates, seed : of the bootstrap
+    """
     groups = scores.shape[1]
     rng = np.random.default_rng(seed)
     drawn = rng.multinomial(groups, np.full(groups, 1.0 / groups), size=replicates)

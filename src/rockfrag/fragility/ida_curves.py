@@ -161,6 +161,7 @@ def fragility_row(
 
 
 def _limited(name: str, value: float, limits: tuple[float, float]) -> dict[str, float]:
+    """Value and limits of a quantity as columns ``name``, ``name_lower`` and ``name_upper``."""
     return {name: value, f"{name}_lower": limits[0], f"{name}_upper": limits[1]}
 
 
@@ -306,6 +307,15 @@ def curve_points(
     ``local`` is the fraction of overturned tests near x, which may fall where the curve cannot (missing where all
     tests are at one value), ``fraction`` with its limits the non-parametric fragility function. Without a curve
     ``probability`` is missing.
+
+    Parameters
+    ----------
+    labels : columns by which the curve differs from others
+    curve, outcomes : the curve, and the tests that it was fitted to
+
+    Returns
+    -------
+    pandas.DataFrame, ``POINTS`` rows, ``x`` in the unit of the measure and the others [-].
     """
     fit, x = curve.fit, levels_drawn(curve, outcomes, POINTS)
     nothing = np.full(POINTS, np.nan)

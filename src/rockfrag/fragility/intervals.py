@@ -181,9 +181,19 @@ def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
     The median of k capacities lies between two finite ends of steps unless all are on one side of it, whose
     probability is 2^(1-k). β is at most that at which k capacities still fall between them as rarely as the level
     allows.
+
+    Parameters
+    ----------
+    nothing : interval without limits of the same tests
+    lower, upper : ends of the steps in the unit of the measure
+
+    Returns
+    -------
+    The interval with these limits, or as it was where the ends are not finite or there is no curve.
     """
     if not 0 < lower < upper < np.inf or nothing.estimate[1] < LEAST_SLOPE:
         return nothing
+    # probability of one capacity between the ends, centred about the median, with which all k are there as rarely
     fraction = (1.0 - nothing.level) ** (1.0 / nothing.groups)
     beta = np.log(upper / lower) / (2.0 * float(special.ndtri(0.5 + 0.5 * fraction)))
     beta = max(beta, 1.0 / nothing.estimate[1])
@@ -327,10 +337,19 @@ def half_width(left_out: Floats, level: float) -> Floats:
 def beta_limits(
     beta: float, left_out: Floats, level: float, *, unbiased: bool = False
 ) -> tuple[float, float]:
-    """Limits of a dispersion from its values without each group, shape (groups,), in a power of it.
+    """Limits of a dispersion from its values without each group, in a power of it.
 
-    β of few groups has a long lower tail, also in its logarithm; this power of it has less of one. ``unbiased``
-    also takes out the first-order bias of β, which few groups make too small.
+    β of few groups has a long lower tail, also in its logarithm; this power of it has less of one.
+
+    Parameters
+    ----------
+    beta, left_out : dispersion of all groups and without each, shape (groups,) [-]
+    level : two-sided confidence level [-]
+    unbiased : whether the first-order bias of β is taken out, which few groups make too small
+
+    Returns
+    -------
+    Lower and upper limit; 0 and infinite where the groups set none.
     """
     groups = len(left_out)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -346,5 +365,6 @@ def beta_limits(
         centre = groups * centre - (groups - 1) * float(powers.mean())
     if not centre + half > 0:
         return 0.0, np.inf
+    # the power is negative: its upper end is the lower limit
     upper = (centre - half) ** (1 / BETA_POWER) if centre > half else np.inf
     return float((centre + half) ** (1 / BETA_POWER)), float(upper)

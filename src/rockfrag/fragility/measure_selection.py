@@ -194,7 +194,15 @@ def _row(
     p: Mapping[str, float],
     **more: float,
 ) -> dict[str, float | str]:
-    """Row of one measure before its scores; ``p`` of sufficiency by the columns given."""
+    """Row of one measure before its scores.
+
+    Parameters
+    ----------
+    column : of the measure
+    fit, interval, outcomes : the curve in it, its limits, and the tests
+    p : p values of sufficiency by the columns given
+    **more : further columns, behind the limits of β
+    """
     return {
         "measure": column,
         "im": fit.im,
@@ -221,11 +229,17 @@ def _select(
     efficiency: str = "beta",
     needed: str = "theta",
 ) -> MeasureSelection:
-    """Sort measures: best held-out score first, equals by efficiency, those without a curve last; and recommend.
+    """Sort measures, best held-out score first, equals by efficiency, those without a curve last; recommend one.
 
-    ``scores`` are log scores by group (:mod:`rockfrag.fragility.held_out`), shape (measures, groups), of so many
-    ``tests``; ``replicates`` and ``seed`` are of the bootstrap. Where all lack the column ``needed`` none is
-    recommended.
+    Parameters
+    ----------
+    rows : a row a measure (:func:`_row`)
+    scores : log scores by group (:mod:`rockfrag.fragility.held_out`), shape (measures, groups)
+    tests : their number
+    given : columns that sufficiency was tested against
+    replicates, seed : of the bootstrap
+    efficiency : column by which equals are sorted
+    needed : column without which no measure is recommended
     """
     compared = pd.DataFrame(rows)
     rising = compared["theta"].notna().to_numpy()
@@ -260,7 +274,7 @@ def _select(
 
 
 def _choice_of(table: pd.DataFrame, groups: int, given: Sequence[str]) -> Choice:
-    """Best measure of a sorted table, its equals and those that score worse."""
+    """Best measure of a sorted table, its equals and those that score worse; ``groups``: number held out."""
     scored = table[table["score"].notna()]
     differs = scored["p_worse"] < DIFFERENCE_P
     worse = scored[differs].sort_values("score", ascending=False)
@@ -277,7 +291,11 @@ def _choice_of(table: pd.DataFrame, groups: int, given: Sequence[str]) -> Choice
 def _best_pair(
     data: Mapping[str, Observations], best: str, group: NDArray[np.intp]
 ) -> tuple[str, float, float]:
-    """Measure that adds most to the best one, the p value of what it adds, and the gain of score."""
+    """Measure that adds most to the best one, the p value of what it adds, and the gain of score a test.
+
+    ``data``: outcomes by measure; ``group``: number of each test's group, shape (tests,). Without any the name is
+    empty.
+    """
     found = ("", float("nan"), -np.inf)
     for name, other in data.items() if best else ():
         logs = np.column_stack([data[best].log_im, other.log_im])

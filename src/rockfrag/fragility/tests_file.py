@@ -221,7 +221,15 @@ def product_of(raw: pd.DataFrame, recipe: Sequence[str | float]) -> Floats:
 
 
 def _outcomes(piece: pd.DataFrame, column: str, source: str, first: int) -> Floats:
-    """Outcomes of a column, 1 for yes and 0 for no; other words are refused."""
+    """Outcomes of a column, 1 for yes and 0 for no, shape (rows,); other words are refused.
+
+    Parameters
+    ----------
+    piece : rows of the table, as text
+    column : of the outcomes
+    source : file that messages name
+    first : number of the first of the rows in it
+    """
     text = piece[column].fillna("").str.strip().str.lower()
     text = text.str.replace(r"^([01])[.,]0*$", r"\1", regex=True)
     wrong = ~text.isin(_YES | _NO).to_numpy()

@@ -62,7 +62,16 @@ class Surface:
         width_m: Floats | Sequence[float] | float,
         height_m: Floats | Sequence[float] | float,
     ) -> tuple[Floats, Floats]:
-        """Median and dispersion of sizes [m]; NaN outside of the sizes that it was fitted to."""
+        """Median and dispersion of sizes; NaN outside of the sizes that the surface was fitted to.
+
+        Parameters
+        ----------
+        width_m, height_m : side over which blocks rock, and height [m], which broadcast
+
+        Returns
+        -------
+        Medians in the unit of the surface's measure, and dispersions [-], of the shape of both.
+        """
         width, height = np.broadcast_arrays(
             real_array("width_m", width_m, "m"), real_array("height_m", height_m, "m")
         )

@@ -8,6 +8,7 @@ In: a table of tests, a row a test, with two columns of measures. Out: :class:`V
 :class:`VectorChecks`, or the tidy :class:`VectorTables`. Theory: ``docs/fragility.md``, "Two intensity measures".
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -99,12 +100,21 @@ class VectorFragility:
     def contour(
         self, probability: float, second: ArrayLike, of: int = 0
     ) -> tuple[Floats, Floats, Floats]:
-        """Value and limits of one measure at which overturning has a probability, at values of the other, (n,).
+        """Values of one measure at which overturning has a probability, at values of the other, with limits.
 
-        ``of`` says which measure is asked for: 0 the first, 1 the second. The value is NaN where the probability
-        does not rise with the measure, limits are 0 and infinity where the earthquakes set none.
+        Parameters
+        ----------
+        probability : of overturning [-]
+        second : values of the other measure, shape (n,)
+        of : measure that is asked for, 0 the first, 1 the second
+
+        Returns
+        -------
+        Value, lower and upper limit, shape (n,) each; the value is NaN where the probability does not rise with
+            the measure, limits are 0 and infinity where the earthquakes set none.
         """
         other = np.log(np.atleast_1d(np.asarray(second, dtype=np.float64)))
+        # Φ⁻¹(p) = c0 + c1 x + c2 y + c12 x y is linear in the logarithm sought;
         # of the fit and of those without an earthquake each, (coefficients, fits, 1)
         c = np.vstack([self.coefficients, self.replicates]).T[:, :, np.newaxis]
         slope = c[1 + of] + (c[3] if self.interaction.kept else 0.0) * other
@@ -198,7 +208,11 @@ def fit_vector(
 
 
 def _notes(names: list[str], fit: "_Fit", replicates: Floats, groups: int) -> list[str]:
-    """Warnings about a fit in two measures, a sentence each."""
+    """Warnings about a fit in two measures, a sentence each.
+
+    ``names``: of the measures; ``replicates``: coefficients without each earthquake, shape (earthquakes,
+    coefficients); ``groups``: number of earthquakes.
+    """
     notes = []
     if "penalised" in fit.method:
         notes.append(
@@ -235,7 +249,10 @@ class _Fit(NamedTuple):
 
 
 def _fitted(design: Floats, outcome: Floats) -> _Fit:
-    """Fit a probit; under separation (found exactly, by linear programming) the likelihood is penalised."""
+    """Fit a probit; under separation (found exactly, by linear programming) the likelihood is penalised.
+
+    ``design``: predictors, shape (tests, k); ``outcome``: 1 for overturned, shape (tests,).
+    """
     fell, trials = outcome[None, :], np.ones((1, outcome.size))
     # among so many tests no plane parts what a fit does not find parted
     apart = outcome.size <= MOST_FOR_THE_PLANE and linearly_separable(design, outcome)
@@ -252,7 +269,17 @@ def _fitted(design: Floats, outcome: Floats) -> _Fit:
 
 
 def design_of(logs: list[Floats], interaction: bool) -> Floats:
-    """Return the predictors: ones, the logarithms of the measures and, if asked for, their product."""
+    """Return the predictors: ones, the logarithms of the measures and, if asked for, their product.
+
+    Parameters
+    ----------
+    logs : ln of the measures, shape (tests,) each
+    interaction : whether the product is wanted
+
+    Returns
+    -------
+    The predictors, shape (tests, 3) or (tests, 4).
+    """
     product = [logs[0] * logs[1]] if interaction else []
     return np.column_stack([np.ones(logs[0].size), *logs, *product])
 
@@ -260,8 +287,13 @@ def design_of(logs: list[Floats], interaction: bool) -> Floats:
 def linearly_separable(design: Floats, outcome: Floats) -> bool:
     """Tell whether a plane parts overturned from survived tests (ties on the plane allowed).
 
-    Solves for the direction c, |c| ≤ 1, that maximises Σ s x·c subject to s x·c ≥ 0, with s = ±1
-    the outcome; a maximum above zero means separation (Konis, 2007, ch. 4).
+    Solves for the direction c, |c| ≤ 1, that maximises Σ s x·c subject to s x·c ≥ 0, with s = ±1 the outcome; a
+    maximum above zero means separation (Konis, 2007, ch. 4).
+
+    Parameters
+    ----------
+    design : predictors x, shape (tests, k)
+    outcome : 1 for overturned, 0 for survived, shape (tests,)
     """
     signed = np.where(outcome > 0, 1.0, -1.0)[:, None] * design
     found = optimize.linprog(
@@ -276,7 +308,14 @@ def linearly_separable(design: Floats, outcome: Floats) -> bool:
 def _replicates(
     design: Floats, outcome: Floats, group: NDArray[np.intp], start: Floats
 ) -> Floats:
-    """Coefficients without one earthquake (or block of many) each; empty with one earthquake."""
+    """Coefficients without one earthquake (or block of many) each, shape (earthquakes, k); empty with one alone.
+
+    Parameters
+    ----------
+    design : predictors, shape (tests, k)
+    outcome, group : 1 for overturned, and number of the earthquake, shape (tests,)
+    start : coefficients of the fit to all, shape (k,)
+    """
     groups = int(group.max()) + 1
     if groups < 2:
         return np.empty((0, design.shape[1]))
@@ -300,6 +339,12 @@ def _interaction(
     The p value is two-sided, of a score test over groups of dependent tests: the efficient score of the product,
     with what the others explain of it taken out, is summed by group; Student's t of these sums has one degree of
     freedom less than there are groups.
+
+    Parameters
+    ----------
+    plain, full : fits without and with the product
+    design : predictors with the product, shape (tests, 4)
+    outcome, group : 1 for overturned, and number of the earthquake, shape (tests,)
     """
     groups, p = int(group.max()) + 1, float("nan")
     others, last = design[:, :-1], design[:, -1]
@@ -308,6 +353,7 @@ def _interaction(
         density = stats.norm.pdf(eta)
         variance = special.ndtr(eta) * special.ndtr(-eta)
         weighted = others * (density**2 / variance)[:, np.newaxis]
+        # of the product, what a weighted regression on the others leaves
         left = last - others @ np.linalg.solve(weighted.T @ others, weighted.T @ last)
         score = np.bincount(
             group, left * (outcome - special.ndtr(eta)) * density / variance
@@ -319,6 +365,7 @@ def _interaction(
     scores_of = partial(
         outcome_scores, design[:, 1:], outcome, np.ones(outcome.size), group
     )
+    # log score of held-out earthquakes with all columns, less that with the two measures alone
     gain = (scores_of() - scores_of(fitted=2)).sum()
     kept = bool(p < INTERACTION_LEVEL and gain > 0 and "penalised" not in full.method)
     return Interaction(p, ratio, kept)
@@ -425,7 +472,10 @@ def _simulated_deviances(
 def _surface_table(
     fit: VectorFragility, logs: list[Floats], outcome: Floats
 ) -> pd.DataFrame:
-    """Tests by cell of both measures, with the observed and the fitted probability."""
+    """Tests by cell of both measures, with the observed and the fitted probability: ``VectorChecks.surface``.
+
+    ``logs``: ln of both measures, shape (tests,) each; ``outcome``: 1 for overturned, shape (tests,).
+    """
     row, first = observations.cells(logs[0], MOST_CELLS)
     column, second = observations.cells(logs[1], MOST_CELLS)
     tests = observations.counts(row, column, np.ones(outcome.size))
@@ -464,6 +514,7 @@ def monotone_probability(overturned: Floats, tests: Floats) -> Floats:
     value = np.where(tests > 0, overturned / weight, overturned.sum() / tests.sum())
     by_row, by_column = np.zeros_like(value), np.zeros_like(value)
     for _ in range(MOST_CYCLES):
+        # each projection starts from the last one with what the same projection took away before
         along = _rising(value + by_row, weight)
         by_row = value + by_row - along
         across = _rising((along + by_column).T, weight.T).T
@@ -476,7 +527,10 @@ def monotone_probability(overturned: Floats, tests: Floats) -> Floats:
 
 
 def _rising(values: Floats, weights: Floats) -> Floats:
-    """Isotonic regression of each row."""
+    """Isotonic regression of each row: the closest values that never fall, shape (rows, columns).
+
+    ``values``, ``weights``: shape (rows, columns).
+    """
     pairs = zip(values, weights, strict=True)
     return np.array([optimize.isotonic_regression(v, weights=w).x for v, w in pairs])
 
@@ -559,7 +613,8 @@ def vector_tables(
     fits: list[dict[str, object]] = []
     contours, cells = [], []
     for name, table in tests.items():
-        used = table.iloc[:: -(-len(table) // MOST_TESTS)]
+        every = math.ceil(len(table) / MOST_TESTS)
+        used = table.iloc[::every]
         for pair in pairs:
             about = {label: name, "first": pair[0], "second": pair[1]}
             try:
@@ -573,9 +628,8 @@ def vector_tables(
             fits.append({**about, **_fit_row(fit, checks)})
             contours.append(_contours(fit, used).assign(**about))
             # measures are named alike for every pair, whose tables are joined
-            surface = checks.surface.rename(
-                columns=dict(zip(pair, CELLS[2:4], strict=True))
-            )
+            alike = {pair[0]: "at_first", pair[1]: "at_second"}
+            surface = checks.surface.rename(columns=alike)
             cells.append(surface.assign(**about))
     return VectorTables(
         pd.DataFrame(fits, columns=[label, *FITS]),
@@ -605,13 +659,18 @@ def _fit_row(fit: VectorFragility, checks: VectorChecks) -> dict[str, object]:
 
 
 def _joined(parts: list[pd.DataFrame], columns: list[str]) -> pd.DataFrame:
+    """Tables one below the other with these columns; without parts a table without rows."""
     if not parts:
         return pd.DataFrame(columns=columns)
     return pd.concat(parts, ignore_index=True)[columns]
 
 
 def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:
-    """Lines of one probability each: values of the stronger measure at values of the other."""
+    """Lines of one probability each, a row a point, with the columns of ``CONTOURS`` behind both measures.
+
+    The value is that of the measure which decides more over the tests: the one whose ln, times its coefficient,
+    scatters more.
+    """
     logs = np.log(tests[list(fit.measures)].to_numpy(dtype=np.float64))
     of = int(np.argmax(np.array(fit.coefficients[1:3]) * logs.std(axis=0)))
     other = np.exp(np.linspace(logs[:, 1 - of].min(), logs[:, 1 - of].max(), POINTS))

@@ -18,7 +18,7 @@ def tell(shape: Shape, restitution: float, pivot: int) -> ForKernels:
 
 
 def rate(value: float, by_momentum: float, before: float, moved: float) -> float:
-    """Rate as a multiple of what momentum leaves."""
+    """Rate after an impact as a multiple of what momentum leaves; arguments as of :class:`rockfrag.laws.Law`."""
     return value * by_momentum
 
 

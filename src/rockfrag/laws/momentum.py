@@ -12,7 +12,7 @@ def tell(shape: Shape, restitution: float, pivot: int) -> ForKernels:
 
 
 def rate(value: float, by_momentum: float, before: float, moved: float) -> float:
-    """Rate that momentum gives."""
+    """Rate after an impact that momentum gives; arguments as of :class:`rockfrag.laws.Law`."""
     return by_momentum
 
 

@@ -15,7 +15,7 @@ def tell(shape: Shape, restitution: float, pivot: int) -> ForKernels:
 
 
 def rate(value: float, by_momentum: float, before: float, moved: float) -> float:
-    """Rate as a multiple of that before the impact."""
+    """Rate after an impact, ``value`` times that before it; arguments as of :class:`rockfrag.laws.Law`."""
     return value * before
 
 

@@ -466,6 +466,7 @@ def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, f
 
 
 def _pulse(motion: Motion, damping: float) -> StrongestPulse:
+    """The strongest pulse of a motion, which no damping changes."""
     from rockfrag.motions.pulse_extraction import strongest_pulse
 
     return strongest_pulse(motion)

@@ -219,7 +219,10 @@ def trim(motion: Motion, start_s: float, end_s: float) -> Motion:
 def _between(
     motion: Motion, step: str, start: float, end: float, **parameters: float
 ) -> Motion:
-    """Cut to whole samples; a time that is a sample but for rounding counts as that sample."""
+    """Cut to whole samples; a time that is a sample but for rounding counts as that sample.
+
+    ``step``: name of the step in the provenance, with ``parameters``; ``start``, ``end``: times [s].
+    """
     first = math.floor(start / motion.dt + 1e-6)
     last = math.ceil(end / motion.dt - 1e-6)
     kept = motion.after(
@@ -235,12 +238,12 @@ def _between(
 def highpass(
     motion: Motion, corner_hz: float, order: int = 4, causal: bool = False
 ) -> Motion:
-    """Butterworth high-pass filter of an order from 1 to 10, acausal unless a causal one is asked for.
+    """Butterworth high-pass filter, acausal unless a causal one is asked for.
 
     Parameters
     ----------
     motion, corner_hz : the motion, and the corner frequency [Hz]
-    order, causal : of the filter, 1 to 10
+    order, causal : of the filter, 1 to 10, and whether it runs forwards only
 
     Returns
     -------
@@ -252,21 +255,44 @@ def highpass(
 def lowpass(
     motion: Motion, corner_hz: float, order: int = 4, causal: bool = False
 ) -> Motion:
-    """Butterworth low-pass filter of an order from 1 to 10, acausal unless a causal one is asked for."""
+    """Butterworth low-pass filter, acausal unless a causal one is asked for.
+
+    Parameters
+    ----------
+    motion, corner_hz : the motion, and the corner frequency [Hz]
+    order, causal : of the filter, 1 to 10, and whether it runs forwards only
+
+    Returns
+    -------
+    The filtered motion [m/s²].
+    """
     return _filtered("lowpass", motion, order, causal, corner_hz=corner_hz)
 
 
 def bandpass(
     motion: Motion, low_hz: float, high_hz: float, order: int = 4, causal: bool = False
 ) -> Motion:
-    """Butterworth band-pass filter between two corners below Nyquist [Hz], acausal unless asked for."""
+    """Butterworth band-pass filter between two corners below Nyquist, acausal unless a causal one is asked for.
+
+    Parameters
+    ----------
+    motion, low_hz, high_hz : the motion, and the corner frequencies [Hz]
+    order, causal : of the filter, 1 to 10, and whether it runs forwards only
+
+    Returns
+    -------
+    The filtered motion [m/s²].
+    """
     return _filtered("bandpass", motion, order, causal, low_hz=low_hz, high_hz=high_hz)
 
 
 def _filtered(
     kind: str, motion: Motion, order: int, causal: bool, **corners_hz: float
 ) -> Motion:
-    """Butterworth filter of a kind, forwards or both ways, with its corners in the provenance."""
+    """Filter a motion by ObsPy's Butterworth filter of a kind, with its corners in the provenance.
+
+    ``kind``: ``highpass``, ``lowpass`` or ``bandpass``; ``corners_hz``: below Nyquist, by their name in messages.
+    """
     corners, nyquist = {}, 0.5 / motion.dt
     for name, value in corners_hz.items():
         corner = positive_number(f"step {kind}: {name}", value, "hertz")
@@ -427,7 +453,14 @@ def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
 def scale_to_sa(
     motion: Motion, sa_g: float, period_s: float, damping: float = 0.05
 ) -> Motion:
-    """Scale to a pseudo-spectral acceleration [g] at a period [s] and a damping [-]."""
+    """Scale to a pseudo-spectral acceleration.
+
+    Parameters
+    ----------
+    motion : to be scaled
+    sa_g : the acceleration [g]
+    period_s, damping : of the oscillator [s], and fraction of critical damping [-]
+    """
     target = positive_number("step scale_to_sa: sa_g", sa_g, "g")
     period_s = positive_number("step scale_to_sa: period_s", period_s, "seconds")
     damping = number_from_zero("step scale_to_sa: damping", damping)

@@ -117,7 +117,10 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
 def _best_of(
     velocity: Floats, dt: float, periods: Floats
 ) -> tuple[float, float, float]:
-    """What the best of the pulses that are tried explains [m²/s²], its period and its cycles."""
+    """Try pulses of all periods and cycles; return what the best one explains [m²/s²], its period [s] and cycles.
+
+    ``velocity`` [m/s] has samples ``dt`` [s] apart; ``periods`` [s] rise.
+    """
     best = (0.0, 0.0, 0.0)
     # long pulses first: they cost little and leave few places at which a short one could explain more
     longest_first = periods[::-1].tolist()
@@ -159,12 +162,20 @@ def best_place(
     cycles: float,
     known: float,
 ) -> tuple[float, int, float, float]:
-    """Find the best place of a pulse of a period [s], γ = ``cycles`` ≥ 1, by least squares at each place.
+    """Find the best place of a pulse of a period and γ = ``cycles`` ≥ 1, by least squares at each place.
 
-    ``velocity`` [m/s] has shape (n,), ``energy`` [m²/s²] is the sum of its squares before each sample and in
-    all, shape (n + 1,); only a pulse that explains more than ``known`` [m²/s²] is of interest. Returned are the
-    explained sum of squares, the sample in the middle of the pulse, and the amplitudes of the even and the odd
-    pulse [m/s]: all zero without a pulse of interest, or where it is longer than the velocity.
+    Parameters
+    ----------
+    velocity : [m/s], shape (n,)
+    energy : sum of its squares before each sample and in all [m²/s²], shape (n + 1,)
+    dt, period : sampling interval and period [s]
+    cycles : γ [-]
+    known : sum of squares [m²/s²] that a pulse must explain more than, to be of interest
+
+    Returns
+    -------
+    Explained sum of squares [m²/s²], sample in the middle of the pulse, amplitudes of the even and the odd pulse
+        [m/s]; all zero without a pulse of interest, or where it is longer than the velocity.
     """
     half = half_length(cycles * period, dt)
     first, last = half, velocity.size - half - 1
@@ -175,17 +186,15 @@ def best_place(
     if first > last:
         return 0.0, 0, 0.0, 0.0
 
-    # one sample's turn of each harmonic, and its value at the last sample of the pulse
+    # places at the ends whose windows hold no more than what is known have been left out; the even pulse is the
+    # real part of e^iφ/2 + (e^iφ(1 + 1/γ) + e^iφ(1 - 1/γ))/4, the odd one its imaginary part;
+    # of the harmonics 1, 1 + 1/γ and 1 - 1/γ: turn of a sample, and value at the last sample of the pulse
     step = 2 * math.pi * dt / period
     turn0, edge0 = _phasor(step), _phasor(step * half)
-    turn1, edge1 = (
-        _phasor(step * (1 + 1 / cycles)),
-        _phasor(step * (1 + 1 / cycles) * half),
-    )
-    turn2, edge2 = (
-        _phasor(step * (1 - 1 / cycles)),
-        _phasor(step * (1 - 1 / cycles) * half),
-    )
+    turn1 = _phasor(step * (1 + 1 / cycles))
+    edge1 = _phasor(step * (1 + 1 / cycles) * half)
+    turn2 = _phasor(step * (1 - 1 / cycles))
+    edge2 = _phasor(step * (1 - 1 / cycles) * half)
 
     # norms of both pulses, and the products of the first window
     unit = complex(1.0, 0.0)
@@ -210,6 +219,7 @@ def best_place(
         if explained > gain:
             gain, place, best = explained, middle, product
         if middle < last:
+            # one sample leaves the window, the others turn, and one comes in
             gone, come = velocity[middle - half], velocity[middle + half + 1]
             sum0 = (sum0 - gone * edge0.conjugate()) * turn0.conjugate() + come * edge0
             sum1 = (sum1 - gone * edge1.conjugate()) * turn1.conjugate() + come * edge1
@@ -219,4 +229,5 @@ def best_place(
 
 @cached_njit()
 def _phasor(angle: float) -> complex:
+    """Complex number of unit size at an angle [rad]."""
     return complex(math.cos(angle), math.sin(angle))

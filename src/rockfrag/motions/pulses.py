@@ -61,10 +61,8 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
     -------
     The :class:`Motion` [m/s²].
     """
-    length, given = (
-        _seconds("one_sine: period", period),
-        {"amplitude": amplitude, "period": period},
-    )
+    length = _seconds("one_sine: period", period)
+    given = {"amplitude": amplitude, "period": period}
     source = "Makris & Roussos (2000)"
     return _pulse(
         "one_sine",
@@ -91,10 +89,8 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
     The :class:`Motion` [m/s²].
     """
     name, source = "one_cosine", "Makris & Roussos (2000)"
-    length, given = (
-        _seconds(f"{name}: period", period),
-        {"amplitude": amplitude, "period": period},
-    )
+    length = _seconds(f"{name}: period", period)
+    given = {"amplitude": amplitude, "period": period}
     return _pulse(
         name,
         source,
@@ -382,7 +378,17 @@ def _pulse(
     given: Mapping[str, float],
     jumps: bool = False,
 ) -> Motion:
-    """Sample the amplitude × ``shape`` between zeros; see the module's first lines."""
+    """Sample the amplitude × ``shape`` between zeros; see the module's first lines.
+
+    Parameters
+    ----------
+    name, source : of the pulse, and who defined it
+    shape : function of the time [s] from the beginning of the pulse, by which the amplitude is multiplied
+    length : of the pulse [s]
+    dt : sampling interval [s] that is asked for; whole intervals make the length
+    given : parameters of the pulse, with its ``amplitude`` [m/s²]
+    jumps : whether the shape is not zero at its ends, so that samples lie half an interval inside
+    """
     real_number(f"{name}: amplitude", given["amplitude"])
     samples = length / _seconds(f"{name}: dt", dt)
     if not 1 < samples <= MOST_SAMPLES:

@@ -95,7 +95,11 @@ def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
 def _histories(
     acceleration: Floats, step: float, matrix: Floats
 ) -> tuple[Floats, Floats]:
-    """Relative displacement and velocity at the samples, from rest."""
+    """Relative displacement [m] and velocity [m/s] at the samples, from rest, shape (n,) each.
+
+    ``acceleration``: of the ground [m/s²], shape (n,); ``step``: between samples [s]; ``matrix``:
+    :func:`oscillator_matrix`.
+    """
     n = acceleration.size
     u, v = np.zeros(n), np.zeros(n)
     for i in range(n - 1):
@@ -118,12 +122,24 @@ def _histories(
 
 @cached_njit()
 def turning_time(x0: float, m0: float, x1: float, m1: float, h: float) -> float:
-    """Time in (0, h) at which the cubic with values x0, x1 and slopes m0, m1 of unlike sign turns."""
+    """Time in (0, h) at which a cubic over an interval turns, where its slopes at both ends have unlike signs.
+
+    Parameters
+    ----------
+    x0, x1 : values at both ends
+    m0, m1 : slopes there [1/s times the unit of the values]
+    h : length of the interval [s]
+
+    Returns
+    -------
+    The time [s].
+    """
     rise = x1 - x0
     a = 3 * (h * (m0 + m1) - 2 * rise)
     b = 2 * (3 * rise - h * (2 * m0 + m1))
     c = h * m0
-    # a ξ² + b ξ + c = 0 has exactly one root in (0, 1), because the slope changes sign once
+    # with ξ = t/h the slope of Hermite's cubic times h is a ξ² + b ξ + c; it has exactly one root in (0, 1),
+    # because it changes sign once: q/a or c/q, so that nothing cancels
     q = -0.5 * (b + math.copysign(math.sqrt(max(b * b - 4 * a * c, 0.0)), b))
     if a != 0.0 and 0.0 < q / a < 1.0:
         return h * q / a
@@ -134,7 +150,19 @@ def turning_time(x0: float, m0: float, x1: float, m1: float, h: float) -> float:
 def state_after(
     u: float, v: float, a: float, s: float, c: float, k: float, t: float
 ) -> tuple[float, float]:
-    """Displacement and velocity a short time t later, by the Taylor series of u'' = -a - c u' - k u."""
+    """Displacement and velocity a short time t later, by the Taylor series of u'' = -a - c u' - k u.
+
+    Parameters
+    ----------
+    u, v : relative displacement [m] and velocity [m/s] now
+    a, s : acceleration of the ground now [m/s²] and its slope [m/s³]
+    c, k : 2 ζ ω [1/s] and ω² [1/s²]
+    t : time [s]
+
+    Returns
+    -------
+    Displacement [m] and velocity [m/s] then.
+    """
     low, high = v, -a - c * v - k * u
     u1, v1 = u + v * t, v
     power, ground = t, s
@@ -152,7 +180,14 @@ def state_after(
 def _response(
     order: int, start: tuple[float, float, float, float], c: float, k: float, t: float
 ) -> tuple[float, float, float]:
-    """u, u' or the total acceleration for order 0, 1 or 2 a short time t later, its slope and its curvature."""
+    """Value, slope and curvature of a response a short time t later.
+
+    Parameters
+    ----------
+    order : of the response: 0 for u, 1 for u', 2 for the total acceleration
+    start : u, u', the ground's acceleration and its slope now
+    c, k, t : as of :func:`state_after`
+    """
     u, v, a, s = start
     u, v = state_after(u, v, a, s, c, k, t)
     total = -(c * v + k * u)
@@ -174,7 +209,10 @@ def _peak_near(
     t: float,
     h: float,
 ) -> float:
-    """Largest value of a response within a step of length h, of which it turns about t after its beginning."""
+    """Largest size of a response within a step of length h [s], of which it turns about t [s] after its beginning.
+
+    One step of Newton's on its slope mends t; other parameters as of :func:`_response`.
+    """
     _, slope, curvature = _response(order, start, c, k, t)
     if curvature != 0.0:
         t = min(max(t - slope / curvature, 0.0), h)
@@ -191,10 +229,14 @@ def peak_within(
     k: float,
     h: float,
 ) -> float:
-    """Largest value of a response where it turns within a step of length h, once or twice; 0 if it does not.
+    """Largest size of a response where it turns within a step, once or twice; 0 if it does not.
 
-    ``order`` says of which response, u, u' or the total acceleration (:func:`_response`). ``first`` and ``last``
-    are its value, slope and curvature at both ends; ``start`` has u, u', the ground's acceleration and its slope.
+    Parameters
+    ----------
+    order : of the response, as of :func:`_response`
+    first, last : its value, slope and curvature at both ends of the step
+    start : u, u', the ground's acceleration and its slope at the beginning
+    c, k, h : 2 ζ ω [1/s], ω² [1/s²] and length of the step [s]
     """
     (x0, m0, n0), (x1, m1, n1) = first, last
     if m0 * m1 < 0:
@@ -225,7 +267,15 @@ def _peaks(
     omega: float,
     damping: float,
 ) -> tuple[float, float, float]:
-    """Peaks of relative displacement and velocity and total acceleration, between steps too."""
+    """Peaks of relative displacement [m] and velocity [m/s] and total acceleration [m/s²], between steps too.
+
+    Parameters
+    ----------
+    acceleration : of the ground [m/s²], shape (n,)
+    step, parts : length of a step [s], and steps a sample
+    matrix : :func:`oscillator_matrix` of a step
+    omega, damping : of the oscillator [rad/s], [-]
+    """
     c, k = 2 * damping * omega, omega * omega
     u = v = 0.0
     total, relative = 0.0, -acceleration[0]
@@ -248,10 +298,12 @@ def _peaks(
                 + matrix[1, 2] * a
                 + matrix[1, 3] * s
             )
+            # at the end of the step: total and relative acceleration, and the slope of the total one
             total1 = -(c * v1 + k * u1)
             relative1 = total1 - (a + step * s)
             jerk1 = -(c * relative1 + k * v1)
             sd, sv, sa = max(sd, abs(u1)), max(sv, abs(v1)), max(sa, abs(total1))
+            # third derivative of u at both ends, and second one of the total acceleration
             at, third, third1 = (u, v, a, s), jerk - s, jerk1 - s
             fourth, fourth1 = -c * third - k * relative, -c * third1 - k * relative1
             # most steps hold no turn, and are not looked into
@@ -543,7 +595,18 @@ def _integrate(
 def _fill_ground(
     acceleration: Floats, first: int, last: int, step: float, parts: int, ground: Floats
 ) -> int:
-    """Write the ground's acceleration and slope at the beginning of each step; return how many these are."""
+    """Write the ground's acceleration [m/s²] and slope [m/s³] at the beginning of each step into ``ground``.
+
+    Parameters
+    ----------
+    acceleration : samples [m/s²], shape (n,); beyond them the ground stands still
+    first, last : samples between which, each divided into ``parts`` steps of ``step`` seconds
+    ground : filled, shape (2, at least the number of steps)
+
+    Returns
+    -------
+    The number of steps.
+    """
     count = 0
     for k in range(first, last):
         start = _sample(acceleration, k)
@@ -617,5 +680,6 @@ def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
         first = displacement, velocity, begins
         last = end_displacement, end_velocity, ends
         start = displacement, velocity, a, s
+        # order 0 is the displacement
         peak = peak_within(0, first, last, start, c, k, step)
         x[_LARGEST + i] = max(x[_LARGEST + i], peak)

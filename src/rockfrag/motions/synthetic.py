@@ -213,11 +213,18 @@ def _corrected(
 
 
 def _envelope(who: str, d5_95_s: float, mid_s: float) -> tuple[float, float]:
-    """Shape and scale of the gamma density that q² follows, from two properties of its integral."""
+    """Shape [-] and scale [s] of the gamma density that q² follows, from two properties of its integral.
+
+    Parameters
+    ----------
+    who : the model, for messages
+    d5_95_s, mid_s : time from 5 to 95 % of the integral, and time of 45 % [s]
+    """
     duration = positive_number(f"{who}: d5_95_s", d5_95_s, "seconds")
     middle = positive_number(f"{who}: mid_s", mid_s, "seconds")
 
     def ratio(shape: float) -> float:
+        """Time from 5 to 95 % over that of 45 %, which does not depend on the scale."""
         low, mid, high = gamma.ppf([0.05, 0.45, 0.95], shape)
         return float((high - low) / mid)
 
@@ -234,7 +241,17 @@ def _envelope(who: str, d5_95_s: float, mid_s: float) -> tuple[float, float]:
 def _unit_process(
     noise: Floats, frequency: Floats, damping: float, dt: float
 ) -> Floats:
-    """White noise through a filter that changes with the time of each impulse, at unit variance."""
+    """White noise through a filter that changes with the time of each impulse, at unit variance.
+
+    Parameters
+    ----------
+    noise, frequency : standard normal impulses, and frequency of the filter then [Hz], shape (n,)
+    damping, dt : of the filter [-], and sampling interval [s]
+
+    Returns
+    -------
+    The process [-], shape (n,).
+    """
     count = noise.size
     lag = np.arange(count) * dt
     total, variance = np.zeros(count), np.zeros(count)
@@ -257,7 +274,10 @@ def _unit_process(
 def _target(
     who: str, periods: ArrayLike, target_g: ArrayLike, dt: float
 ) -> tuple[Floats, Floats]:
-    """Checked periods [s] and spectral accelerations [m/s²] of a target."""
+    """Checked periods [s] and spectral accelerations [m/s²] of a target, shape (k,) each.
+
+    ``who``: the model, for messages; ``target_g`` [g]; ``dt``: sampling interval [s].
+    """
     given = np.asarray(periods, dtype=np.float64)
     wanted = np.asarray(target_g, dtype=np.float64)
     if given.ndim != 1 or given.shape != wanted.shape or given.size < 2:
@@ -279,7 +299,11 @@ def _target(
 
 
 def _at_rest(acceleration: Floats, window: Floats, dt: float) -> Floats:
-    """Bring velocity and displacement to rest at the end with a windowed straight line."""
+    """Bring velocity and displacement to rest at the end by taking off a windowed straight line.
+
+    ``acceleration`` [m/s²] and ``window`` [-] have the shape (n,), ``dt`` is in seconds; two factors of the line
+    follow from two conditions.
+    """
     lines = [window, window * np.linspace(0.0, 1.0, window.size)]
     ends = np.array(
         [[history[-1] for history in integrate(line, dt)] for line in lines]
@@ -299,7 +323,16 @@ def _synthetic(
     given: Mapping[str, Any],
     **found: float,
 ) -> Motion:
-    """A motion made by a model, with the model and its seed in the provenance."""
+    """A motion made by a model, with the model, its source, seed and parameters in the provenance.
+
+    Parameters
+    ----------
+    acceleration, dt : samples [m/s²], shape (n,), and their interval [s]
+    model, source : name of the model, and who published it
+    seed : of its noise
+    given : its parameters
+    **found : what of the motion is worth knowing, for its metadata
+    """
     facts = {"synthetic": True, "kind": model, "source": source, "seed": seed, **found}
     step = {"step": model, "seed": seed, **plain(given), "dt": float(dt)}
     return Motion(acceleration, dt, f"{model}_{seed}", facts, (step,))

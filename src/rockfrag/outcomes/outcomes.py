@@ -71,7 +71,15 @@ def column(
     *,
     shown: bool = True,
 ) -> Any:
-    """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`; NaN where an engine does not tell."""
+    """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`.
+
+    Parameters
+    ----------
+    empty : value where an engine does not tell
+    unit : of its values
+    table : in which it appears: of cases, bodies, contacts or constraints
+    shown : whether the result shows it at the prompt
+    """
     about = {"table": table, "unit": unit, "empty": empty}
     # at the prompt, a result fits a screen
     return field(metadata=about, repr=shown and table != "constraints")

@@ -70,7 +70,11 @@ def outcomes_figure(outcomes: "Outcomes", title: str) -> Figure:
 def _rotations(
     axes: Axes, levels: Floats, rotation: Floats, names: tuple[str, ...]
 ) -> None:
-    """Draw a line a motion up to its fall, and a row of crosses above where it overturns."""
+    """Draw a line a motion up to its fall, and a row of crosses above where it overturns.
+
+    ``levels``, ``rotation``: scales, and peak rotations over the critical angle, infinite for a fall, shape
+    (motions, scales).
+    """
     few = len(rotation) <= MOST_NAMED
     for j, values in enumerate(rotation):
         order = np.argsort(levels[j], kind="stable")

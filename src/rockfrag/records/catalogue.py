@@ -116,7 +116,7 @@ def repeated_motions(table: pd.DataFrame) -> list[str]:
 
 
 def _checked(path: str | os.PathLike[str]) -> tuple[pd.DataFrame, list[int]]:
-    """Return the table of a catalogue and the line of each of its rows."""
+    """Read and check a catalogue; return its table and the number of the line of each of its rows."""
     faults: list[str] = []
     optional = [column for column in COLUMNS if column not in NEEDED]
     lines = read_rows(path, NEEDED, optional, least=0, faults=faults)

@@ -156,6 +156,11 @@ class Component:
     # it has none
     shared_by_a_record: tuple[tuple[object, ...] | None, ...]
 
+    @property
+    def shared_file(self) -> tuple[object, ...] | None:
+        """The file that components of one record share, None of a file with one component."""
+        return self.shared_by_a_record[0]
+
 
 @dataclass
 class CatalogueDraft:
@@ -412,7 +417,14 @@ class CatalogueDraft:
 def _component(
     file: Path, channel: Channel, motion: Motion, own_row: dict[str, Any], several: bool
 ) -> Component:
-    """Return what a catalogue needs of one channel of a file, of ``several`` or alone."""
+    """Return what a catalogue needs of one channel of a file.
+
+    Parameters
+    ----------
+    file, channel, motion : the file, its channel and the motion of that
+    own_row : keys of its row that are known: file, unit and interval
+    several : whether the file has other channels
+    """
     facts = motion.metadata
     path = channel.member or str(file)
     plain = PurePosixPath(path if channel.member else file.name).name.removesuffix(
@@ -422,7 +434,9 @@ def _component(
     name = plain if _OF_KNET.search(plain) else plain.rsplit(".", 1)[0] or plain
     stem, suffix = (name, "") if several else parts_of(name)
     orientation = str(facts.get("component") or ("" if suffix in NUMBERS else suffix))
-    azimuth, container = facts.get("azimuth_deg"), str(file) if channel.member else ""
+    azimuth = facts.get("azimuth_deg")
+    # the archive that the file lies in
+    container = str(file) if channel.member else ""
     place = facts.get("network"), facts.get("station"), facts.get("location")
     # the channel of a MiniSEED file is its code; others state the component in words
     stated = bool(facts.get("component") and facts.get("earthquake")) and not several
@@ -439,7 +453,15 @@ def _component(
     }
     samples = motion.acceleration.tobytes() + repr(motion.dt).encode()
     return Component(
-        row["file"], row, stem, suffix, path, bool(container), name, motion.acceleration.size, motion.dt,
+        file=row["file"],
+        row=row,
+        stem=stem,
+        suffix=suffix,
+        path=path,
+        packed=bool(container),
+        plain_name=name,
+        npts=motion.acceleration.size,
+        dt=motion.dt,
         digest=hashlib.sha256(samples).hexdigest(),
         quality_flags=tuple(quality_flags(motion)),
         azimuth=azimuth_of(orientation) if azimuth is None else float(azimuth),
@@ -524,16 +546,19 @@ def _horizontal(group: Sequence[Component]) -> list[Component]:
 
 
 def _with_third_upright(components: Sequence[Component]) -> list[Component]:
-    """Take the third of a file's 1, 2 and 3 for the vertical, as FDSN numbers components; none is an azimuth."""
+    """Return components of which, in a file that numbers them 1, 2 and 3, the third is the vertical.
+
+    So FDSN numbers components; the numbers then say nothing of azimuths.
+    """
     names: dict[object, set[str]] = {}
     for component in components:
-        file = component.shared_by_a_record[0]
+        file = component.shared_file
         if file is not None:
             names.setdefault(file, set()).add(str(component.row["component"]))
     numbered = {file for file, found in names.items() if found == {"1", "2", "3"}}
     return [
         replace(each, azimuth=None, is_vertical=each.row["component"] == "3")
-        if each.shared_by_a_record[0] in numbered
+        if each.shared_file in numbered
         else each
         for each in components
     ]
@@ -545,13 +570,12 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
     components = _with_third_upright(components)
     left = list(components)
     numbered = _numbered(components)
-    for way in range(len(_GROUPED_BY)):
+    for way, shared in enumerate(_GROUPED_BY):
         by_key: dict[object, list[Component]] = {}
         for component in left:
             key = component.shared_by_a_record[way]
-            if key is not None and not (
-                _GROUPED_BY[way] == "names" and component.file in numbered
-            ):
+            counts_records = shared == "names" and component.file in numbered
+            if key is not None and not counts_records:
                 by_key.setdefault(key, []).append(component)
         for several in by_key.values():
             # of copies the first
@@ -575,14 +599,19 @@ _GROUPED_BY = ("file", "headers", "names", "station and time")
 
 
 def _numbered(components: Sequence[Component]) -> set[str]:
-    """Return the files of components whose names count records, and not the components of one."""
+    """Return the files of components whose names count records, and not the components of one.
+
+    So do the files r01 and r02 of a folder or an archive; A1 and A2 may be two components (``numbered_records``).
+    """
     folders: dict[object, dict[str, str]] = {}
     for component in components:
+        # files beside an archive are none of its members
         folder = component.packed, str(Path(component.path).parent)
         folders.setdefault(folder, {})[component.plain_name] = component.file
     counted = {
         files[name] for files in folders.values() for name in numbered_records(files)
     }
+    # a suffix such as 090 or NS names a component whatever the number before it counts
     return {c.file for c in components if c.suffix in NUMBERS and c.file in counted}
 
 
@@ -610,6 +639,7 @@ def _is_record(group: Sequence[Component]) -> bool:
         or {flat[0].suffix, flat[1].suffix} == {"1", "2"}
     ):
         return True
+    # angle between both lines, from 0 to 90 degrees
     apart = abs((first - second + 90) % 180 - 90)
     return abs(apart - 90) <= _PERPENDICULAR
 

@@ -359,11 +359,9 @@ def peak_displacement(acceleration: Floats, dt: float) -> float:
     changes = (velocity[:-1] * velocity[1:] < 0) | (
         acceleration[:-1] * acceleration[1:] < 0
     )
-    a0, v0, d0 = (
-        acceleration[:-1][changes],
-        velocity[:-1][changes],
-        displacement[:-1][changes],
-    )
+    a0 = acceleration[:-1][changes]
+    v0 = velocity[:-1][changes]
+    d0 = displacement[:-1][changes]
     slope = np.diff(acceleration)[changes] / dt
     discriminant = a0**2 - 2 * slope * v0
     # the two roots in the form that loses no digits when one of them is small; a root that does not

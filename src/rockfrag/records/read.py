@@ -110,7 +110,15 @@ def _channels(
 
 
 def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Record:
-    """Read one member of an archive, or all that hold acceleration."""
+    """Read one member of an archive, or all that hold acceleration.
+
+    Parameters
+    ----------
+    file : the archive
+    wanted : path or name of the one member; empty for all
+    dt : sampling interval of members that state none [s]
+    cut_short : whether a member that ends early is wanted
+    """
     channels: list[Channel] = []
     forms: set[str] = set()
     left_out: list[tuple[str, InputError]] = []
@@ -346,7 +354,10 @@ def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
 def _settled_unit(
     record: Record, channel: Channel, samples: NDArray[np.float64], unit: str | None
 ) -> str:
-    """Unit of the samples, as stated in the file or given; an error where both differ or none is known."""
+    """Unit of the samples, as stated in the file or given; an error where both differ or none is known.
+
+    ``samples``: shape (n,), whose peaks the message shows in every unit; ``unit``: given by the user.
+    """
     asked = None if unit is None else quantities.asked_unit(unit)
     velocity = directions.is_seismometer(channel.code)
     if channel.counts and (velocity or asked is None):

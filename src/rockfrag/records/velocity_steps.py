@@ -68,7 +68,7 @@ class VelocitySteps:
             )
 
     def scaled(self, factor: float) -> tuple[Floats, Floats, Floats]:
-        """Times, and both jumps times a factor."""
+        """Times [s], and the horizontal and vertical jumps [m/s] times a factor, shape (n,) each."""
         return self.times, factor * self.horizontal, factor * self.vertical
 
 

@@ -410,7 +410,15 @@ def agreement_figure(agreement: pd.DataFrame) -> Figure:
 def beside_figure(
     tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label: str
 ) -> Figure:
-    """Draw measured and simulated fragility in one measure: curves, and fractions of tests in bins."""
+    """Draw measured and simulated fragility in one measure: curves, and fractions of tests in bins.
+
+    Parameters
+    ----------
+    tests : a row a test, with the ``measure``, and whether it was measured and simulated to overturn
+    curves : lognormal curves, rows with ``who``, ``theta`` and ``beta``
+    measure : column of the tests
+    label : of the axis of the measure, with its unit
+    """
     values = tests[measure].to_numpy()
     x = np.geomspace(values.min(), values.max(), 200)
     edges = np.unique(np.quantile(values, np.linspace(0, 1, _BINS + 1)))
@@ -441,7 +449,14 @@ def beside_figure(
 def tests_figure(
     tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]
 ) -> Figure:
-    """Draw every test in two measures: what happened by colour, wrong predictions as crosses."""
+    """Draw every test in two measures: what happened by colour, wrong predictions as crosses.
+
+    Parameters
+    ----------
+    tests : a row a test, with both measures, ``overturned`` in the laboratory, and whether that was ``right``
+    x, y : columns of the measures
+    labels : of the axes
+    """
     with style.panels(style.COLUMN_WIDTH, 2.8) as (figure, axes):
         for right, fell, colour, word in (
             (True, False, style.GUIDE, "survived"),

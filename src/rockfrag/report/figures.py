@@ -41,7 +41,7 @@ _RIGHT = Path(_ARROW[:, ::-1], _STROKES)
 
 
 def drawn_tests(tests: pd.DataFrame) -> pd.DataFrame:
-    """Tests with what is drawn of each: ``a`` [g], and whether it is only a bound (``up``, ``down``).
+    """Tests with what is drawn of each: an amplitude, or only a bound of it.
 
     Parameters
     ----------
@@ -49,7 +49,8 @@ def drawn_tests(tests: pd.DataFrame) -> pd.DataFrame:
 
     Returns
     -------
-    The tests with the columns ``a``, ``up`` and ``down``.
+    The tests with the columns ``a`` [g], ``up``, whether that is a lower bound as the test never overturned, and
+    ``down``, whether it is an upper bound.
     """
     known = tests["amplitude_g"].notna()
     up = ~known & tests["upper_g"].isna()
@@ -79,7 +80,7 @@ def plot_tests(
 def _plot_arrows(
     axes: Axes, x: Floats, y: Floats, *, bound: pd.Series, arrow: Path, colour: str
 ) -> None:
-    """Draw an arrow at each bound that is open."""
+    """Draw an arrow at each point (x, y) whose ``bound`` is open."""
     chosen = bound.to_numpy(dtype=bool)
     axes.plot(
         x[chosen],
@@ -168,7 +169,15 @@ def _join_pairs(axes: Axes, rows: pd.DataFrame) -> None:
 def _sides_panel(
     axes: Axes, rows: pd.DataFrame, by: str, levels: Sequence[str], means: pd.DataFrame
 ) -> None:
-    """Tests of both sides beside each other, those of one pair joined, and the means of each side."""
+    """Tests of both sides beside each other, those of one pair joined, and the means of each side.
+
+    Parameters
+    ----------
+    axes : to draw on
+    rows : a row a test, with ``pedestal`` P or NP
+    by, levels : column that parts the tests, and its values in the order of the axis
+    means : geometric means by that column and ``pedestal``
+    """
     place = {level: float(number) for number, level in enumerate(levels)}
     both = set(rows["pedestal"]) == set(SIDES)
     shift = SIDE_SHIFT if both else dict.fromkeys(SIDES, 0.0)
@@ -195,7 +204,7 @@ def _sides_panel(
 
 
 def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) -> None:
-    """Label the axis, and explain sides, means and marks in the legend."""
+    """Label the axis, and explain sides, means (if there are any) and marks of the ``tests`` in the legend."""
     axes.set_ylabel(AMPLITUDE)
     sides = [side for side in SIDES if (tests["pedestal"] == side).any()]
     handles = []

@@ -263,6 +263,7 @@ def _recorded_outcomes(counts: Mapping[str, int], motions: int, total: int) -> s
 
 
 def _overturning(n: int, motions: int) -> str:
+    """Words for so many motions, of all, that overturn."""
     return (
         f"{of_all(n, motions, 'motion')} {agree(n, motions, 'overturns', 'overturn')}"
     )
@@ -594,7 +595,18 @@ def _ratio_and_units(row: Mapping[Any, Any], sides: Sides, has_width: bool) -> s
 
 
 def _effect_by_floor(floors: pd.DataFrame, sides: Sides) -> Finding:
-    """Finding on whether an effect differs between floors."""
+    """Finding on whether an effect differs between floors.
+
+    Parameters
+    ----------
+    floors : a row a floor, in ``level`` by its name, with a ratio of amplitudes and its 95 % interval, ``lower``
+        and ``upper``
+    sides : words for what is compared
+
+    Returns
+    -------
+    The finding; an effect is clear on a floor where the interval does not hold 1.
+    """
     limits = floors[["lower", "upper"]].to_numpy(dtype=float)
     known = np.array(
         [wording.has_interval(low, high, _RATIO_DECIMALS) for low, high in limits]
@@ -702,11 +714,9 @@ def sliding_found(sliding: pd.DataFrame) -> Finding:
     -------
     The finding.
     """
-    cases, slid, flew = (
-        int(sliding["cases"].sum()),
-        int(sliding["slid"].sum()),
-        int(sliding["flew"].sum()),
-    )
+    cases = int(sliding["cases"].sum())
+    slid = int(sliding["slid"].sum())
+    flew = int(sliding["flew"].sum())
     saved, felled = int(sliding["saved"].sum()), int(sliding["felled"].sum())
     if slid == flew == 0:
         text = (

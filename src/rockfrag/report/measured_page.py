@@ -206,7 +206,14 @@ def _curves(
     goodness: pd.DataFrame,
     calibration: FigureSpec,
 ) -> Section:
-    """Fitted curves, how well they describe the tests, and their warnings."""
+    """Fitted curves, how well they describe the tests, and their warnings.
+
+    Parameters
+    ----------
+    study : the table of tests
+    fitted, goodness : tables, a row a measure, of curves and of tests of their fit
+    calibration : figure of predicted and measured fractions
+    """
     warnings = dict.fromkeys(note for note in fitted["warnings"] if note)
     level = _level(study)
     curves = table_html(

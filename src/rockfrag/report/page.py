@@ -344,7 +344,15 @@ def draw_all(
     processes: int = 1,
     endings: Sequence[str] = ("svg", "png"),
 ) -> dict[str, Picture]:
-    """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
+    """Draw figures into a folder and return them by name; whoever draws, the bytes are the same.
+
+    Parameters
+    ----------
+    specs : the figures
+    folder : of their files, which is made
+    processes : that draw at once
+    endings : of the files, ``svg`` among them
+    """
     folder.mkdir(parents=True, exist_ok=True)
 
     def drawn(spec: FigureSpec) -> None:

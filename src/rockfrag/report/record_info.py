@@ -90,7 +90,14 @@ def _error_row(file: str, error: InputError) -> dict[str, Any]:
 def _row(
     record: Record, channel: Channel, unit: str | None, force: bool
 ) -> dict[str, Any]:
-    """Row of the table on one channel: its length, peaks, period and quality flags."""
+    """Row of the table on one channel: its length, peaks, period and quality flags.
+
+    Parameters
+    ----------
+    record, channel : the file as read, and one of its channels
+    unit : of the samples where the file states none
+    force : whether that holds against what the file states
+    """
     row: dict[str, Any] = {
         "file": printable(
             f"{record.name}#{channel.member}" if channel.member else record.name

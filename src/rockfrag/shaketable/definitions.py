@@ -47,10 +47,8 @@ class Swept:
 
         Columns: those asked for of ``about``, ``amplitude_g`` and ``overturned``.
         """
-        amplitude, overturned = (
-            self.amplitude_g[::step],
-            self.overturned[:, ::step].ravel(),
-        )
+        amplitude = self.amplitude_g[::step]
+        overturned = self.overturned[:, ::step].ravel()
         motions = np.repeat(np.arange(len(self.about)), amplitude.size)
         rows = self.about[list(columns)].iloc[motions].reset_index(drop=True)
         return rows.assign(
@@ -114,7 +112,10 @@ def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swe
 
 
 def _swept(part: pa.Table, reached: str, path: Path) -> Swept:
-    """Turn rows of a motion and an amplitude each into tables of motions by amplitudes; messages name ``path``."""
+    """Turn rows of a motion and an amplitude each into tables of motions by amplitudes.
+
+    ``reached``: column of the limit state; ``path``: for messages.
+    """
     amplitude = part["amplitude_g"].to_numpy()
     motion = part["motion"].combine_chunks()
     code = motion.indices.to_numpy()
@@ -218,7 +219,17 @@ def step_protocol(amplitudes: Floats, overturned: Flags, protocol: Protocol) -> 
 def _levels(
     amplitudes: Floats, protocol: Protocol, limit_g: float | None, repetition: int
 ) -> NDArray[np.intp]:
-    """Which amplitudes of an IDA curve the series of levels takes; levels beyond its end are not climbed."""
+    """Numbers of the amplitudes of an IDA curve that the series of levels takes.
+
+    Levels beyond the end of the curve are not climbed.
+
+    Parameters
+    ----------
+    amplitudes : of the curve, rising [g], shape (n,)
+    protocol : that climbs
+    limit_g : of the table for this motion [g]; None for that of the protocol
+    repetition : number of the series
+    """
     levels = protocol.amplitudes(limit_g, repetition)
     middles = (amplitudes[1:] + amplitudes[:-1]) / 2
     spacing = float(np.diff(amplitudes[-2:])[0]) if amplitudes.size > 1 else 0.0
@@ -328,7 +339,14 @@ def _row(
     definition: str,
     climbed: NDArray[np.intp],
 ) -> dict[str, object]:
-    """Outcome of the motion in a row of a part, at the amplitudes that were climbed."""
+    """Outcome of the motion in a row of a part, at the amplitudes that were climbed.
+
+    Parameters
+    ----------
+    part, place : swept motions, and the number of the row
+    protocol, definition : how amplitudes are climbed, and which overturning is meant
+    climbed : numbers of the amplitudes
+    """
     about = part.about.iloc[place]
     bounds = first_overturning
     if definition == "always_overturning":

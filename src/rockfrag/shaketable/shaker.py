@@ -73,14 +73,10 @@ class Shaker:
         velocity, displacement = integrate(
             scale_to_pga(motion, amplitude_g).acceleration, motion.dt
         )
-        travel, excursion = (
-            float(np.ptp(displacement)),
-            float(np.abs(displacement).max()),
-        )
-        force, speed = (
-            amplitude_g * GRAVITY * self.moved_mass(payload),
-            np.abs(velocity).max(),
-        )
+        travel = float(np.ptp(displacement))
+        excursion = float(np.abs(displacement).max())
+        force = amplitude_g * GRAVITY * self.moved_mass(payload)
+        speed = np.abs(velocity).max()
         reach = 2 * excursion if self.start == "centred" else travel
         uses = {"stroke": reach / self.stroke, "force": force / self.force}
         if self.velocity is not None:
@@ -218,6 +214,7 @@ def shaker_table(
 
 
 def _filtered(motion: Motion, corner: float) -> Motion:
+    """Motion without what is slower than a corner frequency [Hz], by an acausal filter."""
     # room for the transients of an acausal filter: Converse & Brady (1992)
     room = 1.5 * FILTER_ORDER / corner
     return highpass(pad(motion, room, room), corner, FILTER_ORDER)

@@ -144,7 +144,10 @@ def _test(row: Row, bounds: tuple[str, str], in_g: float) -> dict[str, object]:
 
 
 def _bounds(row: Row, low: str, high: str, censored: bool) -> tuple[float, float]:
-    """Bounds of the overturning amplitude, the upper one NaN where the test is censored."""
+    """Bounds of the overturning amplitude [g], the upper one NaN where the test is ``censored``.
+
+    ``low``, ``high``: their columns in the row.
+    """
     lower = row.number(low)
     if lower < 0:
         raise row.error(low, f"must be zero or more, got {row.cells[low]}")

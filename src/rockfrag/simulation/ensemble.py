@@ -181,7 +181,14 @@ def prepared(
     seed: int = 0,
     **options: Unpack[Options],
 ) -> Cases:
-    """Return the checked cases of a door."""
+    """Return the checked cases of ``overturns`` and its like.
+
+    Parameters
+    ----------
+    bodies, motions, dt, scales, options : as these take them
+    forces : whether forces are asked for
+    spread, seed : of bases in space
+    """
     body_list = inputs.listed_bodies(bodies)
     shaking = inputs.listed_motions(motions, dt, options.get("vertical"))
     factors = inputs.checked_scales(scales, shaking)
@@ -206,7 +213,7 @@ def prepared(
 
 
 def shaken(cases: Cases) -> Outcomes:
-    """Run cases, add the weight that the ground leaves, and warn where pure rocking may be no answer."""
+    """Run cases, add the least part of gravity that is left, and warn where pure rocking may be no answer."""
     outcomes = replace(
         run_cases(cases),
         systems=tuple(system.name for system in cases.systems),
@@ -216,13 +223,7 @@ def shaken(cases: Cases) -> Outcomes:
     if not outcomes.overturned.size:
         return outcomes
     if any(motion.z is not None for motion in cases.motions):
-        ups = [
-            motion.z.acceleration if motion.z else np.zeros(1)
-            for motion in cases.motions
-        ]
-        ends = np.array([(up.min(initial=0.0), up.max(initial=0.0)) for up in ups])
-        least = np.min(ends[:, np.newaxis, :] * cases.scales[..., np.newaxis], axis=2)
-        outcomes.minimum_gravity_ratio[:] = 1.0 + least / cases.request.g
+        outcomes.minimum_gravity_ratio[:] = 1.0 + _least_upward(cases) / cases.request.g
     # a body that is answered in space leaves the ground where it has to, and so do more than two bodies
     in_space = any(motion.y is not None for motion in cases.motions)
     held = [not system.loose and system.count < 3 for system in cases.systems]
@@ -231,9 +232,20 @@ def shaken(cases: Cases) -> Outcomes:
     )
     if stuck.any() and not cases.request.forces:
         for words in _light_words(cases, outcomes, stuck):
-            # past the door that shakes, and its keywords
+            # at the caller's line: past this function, ``overturns`` and the wrapper of its keywords
             warnings.warn(words, LightBodies, stacklevel=4)
     return outcomes
+
+
+def _least_upward(cases: Cases) -> Floats:
+    """Least upward acceleration of the ground [m/s²], zero or less, shape (motions, scales)."""
+    ups = [
+        motion.z.acceleration if motion.z else np.zeros(1) for motion in cases.motions
+    ]
+    # both extremes, as scales may be negative, shape (motions, 2)
+    ends = np.array([(up.min(initial=0.0), up.max(initial=0.0)) for up in ups])
+    scaled = ends[:, np.newaxis, :] * cases.scales[..., np.newaxis]
+    return np.asarray(scaled.min(axis=2))
 
 
 def overturned_cases(
@@ -260,10 +272,8 @@ def overturned_cases(
         column = pd.Series(row).groupby(row).cumcount().to_numpy()
         scales = np.zeros((used.size, column.max() + 1))
         scales[row, column] = scale[mine]
-        systems, motions = (
-            (cases.systems[number],),
-            tuple(cases.motions[m] for m in used),
-        )
+        systems = (cases.systems[number],)
+        motions = tuple(cases.motions[m] for m in used)
         some = replace(
             cases, systems=systems, motions=motions, scales=scales, threads=1
         )
@@ -277,11 +287,17 @@ def overturned_cases(
 def _light_words(
     cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]
 ) -> Iterator[str]:
-    """Say in how many cases bodies may leave the ground: it drops, or squat ones rock in strong motions.
+    """Warn of cases in which bodies may leave the ground, because it drops or because they rock so strongly.
 
-    ``stuck`` says which systems pure rocking holds to the ground, shape (systems,); what is counted has the shape
-    (systems, motions, scales).
+    ``stuck`` says which systems pure rocking holds to the ground, shape (systems,); cases are counted over the
+    shape (systems, motions, scales).
     """
+    yield from _words_of_drops(outcomes, stuck)
+    yield from _words_of_squat_bodies(cases, outcomes, stuck)
+
+
+def _words_of_drops(outcomes: Outcomes, stuck: NDArray[np.bool_]) -> Iterator[str]:
+    """Say in how many cases the ground drops so fast that little is left of gravity; ``stuck``: which systems."""
     ratio = outcomes.minimum_gravity_ratio[stuck]
     light, none = int((ratio < LIGHT).sum()), int((ratio <= 0).sum())
     if light:
@@ -290,9 +306,16 @@ def _light_words(
             f"half of its weight, in {none} of them none at all; pure rocking holds it on the ground there. "
             "Give friction= to let it fly, or forces=True to see when contact is lost."
         )
+
+
+def _words_of_squat_bodies(
+    cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]
+) -> Iterator[str]:
+    """Say in how many cases a squat body rocks so strongly that it may lift itself; ``stuck``: which systems."""
     unscaled = np.array([motion.x.pga for motion in cases.motions])
+    # peak ground accelerations [m/s²], shape (motions, scales)
     peaks = unscaled[:, np.newaxis] * np.abs(cases.scales)
-    # a body that rocks at less is too slender or too squat to lift itself
+    # of weaker motions it need not be asked: a body that rocks at less is too slender or too squat to lift itself
     if not (peaks > LEAST_LIFTING * cases.request.g).any():
         return
     least = np.array(
@@ -301,6 +324,7 @@ def _light_words(
     strong = (peaks > LIFTING * least[:, np.newaxis, np.newaxis]) & stuck[
         :, np.newaxis, np.newaxis
     ]
+    # without an outcome the peak rotation is NaN, and it is none that rocked
     with np.errstate(invalid="ignore"):
         found = int((strong & (outcomes.peak_rotation > 0).any(axis=-1)).sum())
     if found:

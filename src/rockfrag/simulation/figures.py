@@ -105,7 +105,14 @@ def thresholds_figure(found: "Thresholds", title: str) -> Figure:
 
 
 def _bars(axes: Axes, y: int, row: Mapping[Hashable, Any], found: "Thresholds") -> None:
-    """Draw the ranges of the peak [g] that overturn, between the resurrections of a row."""
+    """Draw the ranges of the peak [g] that overturn, between the resurrections of a row.
+
+    Parameters
+    ----------
+    axes, y : to draw on, and at which height
+    row : of the table of thresholds, of a body under a motion
+    found : thresholds, with all resurrections
+    """
     gaps = found.resurrections
     own = gaps[(gaps["body"] == row["body"]) & (gaps["motion"] == row["motion"])]
     starts = [row["first_overturning"], *own["upper"]]

@@ -54,10 +54,8 @@ def _checked_motion(motion: Any, dt: float | None, name: str) -> Motion:
             raise InputError(
                 f"dt: {name} is an array; give its sampling interval in seconds."
             )
-        interval, values = (
-            positive_number("dt", dt, "seconds"),
-            real_array(name, motion, "m/s²"),
-        )
+        interval = positive_number("dt", dt, "seconds")
+        values = real_array(name, motion, "m/s²")
     if values.ndim != 1:
         raise InputError(f"{name}: expected shape (n,), got {values.shape}.")
     if values.size < 2:
@@ -163,7 +161,14 @@ def ground_motion(
     name: str = "motion",
     vertical_name: str = "vertical",
 ) -> GroundMotion:
-    """Return the checked ground motion of a horizontal and perhaps a vertical component."""
+    """Return the checked ground motion of a horizontal and perhaps a vertical component.
+
+    Parameters
+    ----------
+    motion, vertical : as a user gives them
+    dt : sampling interval [s] of a motion that is an array
+    name, vertical_name : of both in messages
+    """
     if isinstance(motion, VelocitySteps):
         motion = GroundMotion(Motion(np.zeros(2), STEPPED), steps=motion)
     if isinstance(motion, GroundMotion):

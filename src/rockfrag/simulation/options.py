@@ -130,7 +130,7 @@ def _rough_where_held(system: System) -> System:
 
 
 def _start(system: System, value: object, name: str) -> tuple[float, ...]:
-    """Return rotations or angular velocities at the start, one for each body; zeros for None."""
+    """Return rotations [rad] or angular velocities [rad/s] at the start, one for each body; zeros for None."""
     if value is None:
         return (0.0,) * system.count
     values = np.atleast_1d(real_array(name, value))
@@ -148,7 +148,13 @@ def _start(system: System, value: object, name: str) -> tuple[float, ...]:
 def systems_of(
     bodies: Sequence[SystemLike], options: Mapping[str, Any]
 ) -> tuple[System, ...]:
-    """Return the systems that bodies and their options, as of :func:`rockfrag.simulation.overturns`, are."""
+    """Return the systems that bodies are with their options.
+
+    Parameters
+    ----------
+    bodies : as a user gives them
+    options : those of :func:`rockfrag.simulation.overturns`: friction, restitution, start
+    """
     count = len(bodies)
     friction = _friction_of_each(options.get("friction"), count)
     restitution = _one_per_body("restitution", options.get("restitution"), count)
@@ -220,7 +226,15 @@ def _frictions_of(count: int, friction: object, name: str) -> list[Friction | No
 def _impact_laws(
     system: System, restitution: Restitution, name: str
 ) -> tuple[ImpactLaw, ...]:
-    """Return the law of the impacts of each contact of a system; messages call the restitution by ``name``."""
+    """Return the law of the impacts of each contact of a system, the ground's first.
+
+    Parameters
+    ----------
+    system : of which they are
+    restitution : None for momentum; a number, a pair (right, left) or an entry a contact, by the law ``position``;
+        or a :class:`MeasuredRestitution`, which names its law
+    name : of the restitution, for messages
+    """
     law, given = "position", restitution
     if isinstance(restitution, MeasuredRestitution):
         law, given = restitution.law, restitution.value
@@ -233,19 +247,21 @@ def _impact_laws(
     )
     wanted = f"a stack takes {wanted}, each of which may be None"
     each = each_contact(name, given, system.count, wanted)
-    places = ("block",) if system.count == 1 else ("ground", "interface")
+    is_lone = system.count == 1
+    places = ["block" if is_lone else "ground"] + ["interface"] * (system.count - 1)
     return tuple(
-        _law_of(
-            f"{name} of the {places[min(k, 1)]}", law, value, shape, system.count == 1
-        )
-        for k, (value, shape) in enumerate(zip(each, system.carried, strict=True))
+        _law_of(f"{name} of the {place}", law, value, shape, lone=is_lone)
+        for place, value, shape in zip(places, each, system.carried, strict=True)
     )
 
 
 def _law_of(
-    name: str, law: str, value: object, shape: geometry.Shape, lone: bool
+    name: str, law: str, value: object, shape: geometry.Shape, *, lone: bool
 ) -> ImpactLaw:
-    """Law of impacts of a contact, of a measured restitution."""
+    """Law of the impacts of a contact by a measured restitution ``value``, one number or a pair (right, left).
+
+    ``shape``: of the body above the contact; ``lone``: whether it stands alone.
+    """
     if value is None:
         return BY_MOMENTUM
     both = _ratios(name, value, shape)

@@ -186,10 +186,8 @@ def stream_histories(
             step_count(
                 system, [motion.dt for motion in cases.motions], request.g, request.step
             )
-    total, places = (
-        len(cases.systems) * cases.scales.size,
-        iter(np.ndindex(*cases.shape)),
-    )
+    total = len(cases.systems) * cases.scales.size
+    places = iter(np.ndindex(*cases.shape))
     schema = _history_schema(answering)
     with (
         whole_file(path) as file,
@@ -216,7 +214,14 @@ def _history_schema(answering: Sequence[Engine]) -> pa.Schema:
 
 
 def _history_table(cases: Cases, schema: pa.Schema, place: tuple[int, ...]) -> pa.Table:
-    """Make the rows of one history, of a system, a motion and a scale."""
+    """Make the rows of one history, a sample each.
+
+    Parameters
+    ----------
+    cases : of the ensemble
+    schema : columns of the table; of those that the history's engine does not give all rows are null
+    place : numbers of its system, its motion and its scale
+    """
     b, m, s = place
     case = Case(
         cases.systems[b], cases.motions[m], float(cases.scales[m, s]), cases.request

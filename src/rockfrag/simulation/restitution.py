@@ -109,6 +109,7 @@ def restitution_from_peaks(
     values, pivots = _checked_peaks(block, peaks)
 
     def model(parameters: Floats) -> Floats:
+        """Peaks [rad] that follow from the first one and e."""
         first, e = parameters
         speed = speed_before(block, first, pivots[0])
         found = [first]
@@ -239,6 +240,7 @@ def restitution_from_history(
     quiet = np.zeros(t.size)
 
     def model(parameters: Floats) -> Floats:
+        """Rotations [rad] that follow from rotation and velocity at the beginning and e."""
         theta0, omega0, e = parameters
         response = simulate(
             block, quiet, dt, theta0=theta0, omega0=omega0, restitution=float(e)
@@ -249,10 +251,8 @@ def restitution_from_history(
     top = block.critical_angle(1 if peaks[0] > 0 else -1)
     # a first sample near the base must not start on the wrong side of it
     begin = float(np.clip(values[0], -0.999 * top, 0.999 * top))
-    scale, bounds = (
-        [top, top * block.frequency(), 1.0],
-        [(-top, top), (-np.inf, np.inf)],
-    )
+    scale = [top, top * block.frequency(), 1.0]
+    bounds = [(-top, top), (-np.inf, np.inf)]
     fit = _least_squares(
         model, values, [begin, slope, min(guess, 0.999)], bounds, scale
     )
@@ -260,7 +260,7 @@ def restitution_from_history(
 
 
 def _numbers(name: str, data: ArrayLike, least: int) -> Floats:
-    """At least so many finite numbers, shape (n,)."""
+    """At least so many finite numbers, shape (n,); ``name``: of the data, in messages."""
     values = real_array(name, data, "s" if "time" in name else "rad")
     if values.ndim != 1 or values.size < least:
         raise InputError(
@@ -273,7 +273,7 @@ def _numbers(name: str, data: ArrayLike, least: int) -> Floats:
 
 
 def _checked_peaks(block: Block, peaks: ArrayLike) -> tuple[Floats, list[int]]:
-    """Sizes of peaks that alternate, and the pivot of each."""
+    """Sizes of peaks that alternate [rad], shape (n,), and the pivot of each, +1 right or -1 left."""
     values = _numbers("peaks", peaks, 2)
     first = 1 if values[0] > 0 else -1
     pivots = [first * (-1) ** k for k in range(values.size)]
@@ -293,7 +293,10 @@ def _checked_peaks(block: Block, peaks: ArrayLike) -> tuple[Floats, list[int]]:
 
 
 def _peaks_of(theta: Floats) -> list[float]:
-    """Signed peaks between changes of sign, as long as they stand out of the noise."""
+    """Signed peaks [rad] of sampled rotations between changes of sign, as long as they stand out of the noise.
+
+    A peak that is larger than the one before by half ends the free rocking.
+    """
     # second differences of a smooth history are small: what they hold is noise
     noise = 1.4826 * float(np.median(np.abs(np.diff(theta, 2)))) / math.sqrt(6)
     floor = max(8 * noise, 1e-3 * float(np.abs(theta).max()))
@@ -317,7 +320,16 @@ def _least_squares(
     bounds: list[tuple[float, float]],
     scale: list[float] | str = "jac",
 ) -> OptimizeResult:
-    """Fit a model's parameters, of which e is the last; ``bounds`` are those of the others."""
+    """Fit a model's parameters, of which e is the last, by least squares.
+
+    Parameters
+    ----------
+    model : gives what ``values`` should be, of the parameters; NaN where the block would go over
+    values : observed, shape (n,)
+    start : parameters to start from
+    bounds : lower and upper ones of all but e
+    scale : sizes of the parameters, or ``jac`` by the slopes
+    """
     low, high = np.transpose([*bounds, (1e-3, 1.0)])
     inside = np.clip(start, np.nextafter(low, high), np.nextafter(high, low))
 
@@ -334,7 +346,15 @@ def _least_squares(
 def _summary(
     block: Block, fit: OptimizeResult, impacts: int, confidence: float
 ) -> RestitutionFit:
-    """Interval of e by Student's t and the curvature of the sum of squares."""
+    """Interval of e by Student's t and the curvature of the sum of squares.
+
+    Parameters
+    ----------
+    block : whose restitution it is
+    fit : with e as the last parameter
+    impacts : number of those it rests on
+    confidence : level of the interval [-]
+    """
     if not 0 < confidence < 1:
         raise InputError(
             f"confidence: expected a level between 0 and 1, got {confidence}."

@@ -128,10 +128,8 @@ def _resized(body: RigidBody, across: float, up: float) -> RigidBody:
         face=None if body.face is None else _scaled(body.face, across),
     )
     if isinstance(body.inertia, tuple):
-        inertia, stretch = (
-            body.tensor,
-            (across, across if isinstance(base, Circle) else 1.0, up),
-        )
+        inertia = body.tensor
+        stretch = (across, across if isinstance(base, Circle) else 1.0, up)
         # I = tr(S) 1 - S of the second moments S, which grow with the product of their two axes
         second_moments = np.trace(inertia) / 2 * np.eye(3) - inertia
         second_moments *= np.outer(stretch, stretch)

@@ -187,7 +187,18 @@ def _intervals(highest: float, narrowest: float) -> int:
 def _read(
     low: Floats, high: Floats, falls: NDArray[np.bool_], highest: float
 ) -> tuple[tuple[float, float], list[tuple[float, float]]]:
-    """Read first and always-overturning scale and resurrections off bracketed changes; the first is a fall."""
+    """Read thresholds and resurrections off changes between falling and standing; the first one is a fall.
+
+    Parameters
+    ----------
+    low, high : scales between which each change lies, rising, shape (changes,)
+    falls : whether the body falls beyond it, and stood below
+    highest : scale up to which it was tried
+
+    Returns
+    -------
+    First and always-overturning scale, NaN where there is none; ends of the ranges that it survives in between.
+    """
     if not falls.size:
         return (math.nan, math.nan), []
     starts, ends = high[~falls], low[falls][1:]

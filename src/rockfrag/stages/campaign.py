@@ -80,7 +80,17 @@ def run(job: Job[CampaignStudy]) -> Results:
 def campaign_with_motions(
     study: CampaignStudy, log: logging.Logger
 ) -> tuple[Campaign, list[Motion | GroundMotion]]:
-    """Read the tests and the motion of each, scaled where the table says so; log how many are left out."""
+    """Read the tests and the motion of each, scaled where the table says so; log how many are left out.
+
+    Parameters
+    ----------
+    study : with the files, and how motions are conditioned
+    log : of the run
+
+    Returns
+    -------
+    The tests, and a motion of the table for each.
+    """
     for public in study.fetch:
         fetch_url(*public)
     campaign = read_campaign(
@@ -176,6 +186,7 @@ def object_of(study: CampaignStudy) -> Shape | Block:
 
 
 def _block(given: Mapping[str, Any]) -> Block:
+    """The planar block that a study gives by hand."""
     return Block.from_edges(
         given["left_m"],
         given["right_m"],
@@ -222,7 +233,15 @@ class _Simulated:
         return comparison.plausible_trials(right, self.measured.groups)
 
     def agreement(self) -> pd.DataFrame:
-        """Who is right how often: simulations, thresholds on measures, other codes; each compared with ours."""
+        """Say how often the simulation is right, and every rival: thresholds on measures, other codes, repeats.
+
+        Returns
+        -------
+        A row each: ``who``; ``right``, the fraction of right outcomes, with ``lower`` and ``upper``;
+            ``false_alarms`` and ``missed``, numbers of tests; ``tests``; of rivals ``better``, by how much the
+            simulation is right more often, with limits and ``p`` (:meth:`MeasuredTests.lead`); ``judged``, by
+            which tests the rival was chosen.
+        """
         tests, measures = self.campaign.tests, self.campaign.measures
         rivals = {}
         if self.trials.planar:
@@ -245,6 +264,7 @@ class _Simulated:
             f"code {name}": given.to_numpy()
             for name, given in self.campaign.codes.items()
         }
+        # more than half of the plausible trials say that it overturns
         rows = [self.measured.agreement(OURS, self.votes >= HALF)]
         rows += [
             self._beside(name, given) for name, given in {**rivals, **codes}.items()
@@ -255,11 +275,18 @@ class _Simulated:
         return table.assign(judged=table["who"].map(judged).fillna("by other motions"))
 
     def _beside(self, name: str, outcomes: Any) -> dict[str, object]:
-        """Agreement of a rival, and how much better we are on the tests of which it says something."""
+        """Agreement of a rival, and how much better the simulation is on the tests of which it says something.
+
+        Parameters
+        ----------
+        name : of the rival
+        outcomes : True or 1 where a test overturns, shape (tests,) or (repeats, tests); NaN where nothing is said
+        """
         each = np.atleast_2d(outcomes)
         given = ~np.isnan(each.astype(float)).any(axis=0)
         theirs, measured = each[:, given].astype(bool), self.measured.only(given)
-        if measured.groups.max(initial=0) < FEWEST_GROUPS - 1:
+        number_of_groups = measured.groups.max(initial=-1) + 1
+        if number_of_groups < FEWEST_GROUPS:
             raise InputError(
                 f"{name}: its tests are of a single input motion; give those of two or more."
             )
@@ -394,7 +421,7 @@ class _Simulated:
 
 
 def _worst_direction(shape: Shape, tolerance_mm: float) -> tuple[float, float]:
-    """Direction of the least critical angle, and that angle; NaN where the shape cannot stand."""
+    """Direction of the least critical angle, and that angle [degrees]; NaN where the shape cannot stand."""
     try:
         return shape.worst_direction(tolerance_mm / 1e3)
     except InputError:

@@ -4,6 +4,7 @@ In: IDA curves and measures of the motions. Out: tables of curves with θ in the
 files for other programs. Theory: ``docs/fragility.md``.
 """
 
+import math
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -119,9 +120,18 @@ def measure_selection(
 ) -> pd.DataFrame:
     """Compare measures for every configuration.
 
+    Parameters
+    ----------
+    ida_curves : outcomes on all floors together, by configuration
+    measures : a row a motion and floor, a column a measure in its unit
+    level : of confidence intervals [-]
+    seed : of resampled earthquakes
+
+    Returns
+    -------
     One row per configuration and measure, best first: the columns of
-    :class:`rockfrag.fragility.measure_selection.MeasureSelection`, ``recommended`` (True for one row each) and
-    ``words``, the recommendation with its reasons.
+        :class:`rockfrag.fragility.measure_selection.MeasureSelection`, ``recommended`` (True for one row each) and
+        ``words``, the recommendation with its reasons.
     """
     parts = []
     for name, ida in ida_curves.items():
@@ -141,12 +151,20 @@ MOST_LEVELS = 200  # intensity levels of a motion in fits of two measures
 def rows_of(parts: Iterable[Swept], most_levels: int | None = None) -> pd.DataFrame:
     """Put outcomes of IDA curves of one configuration into a table with a row a test.
 
-    Columns: ``earthquake``, ``floor``, ``motion``, ``amplitude_g`` and ``overturned`` (0 or 1). ``most_levels`` of
-    a motion are taken.
+    Parameters
+    ----------
+    parts : swept motions
+    most_levels : intensity levels of a motion that are kept, thinned evenly to at most so many; None for all
+
+    Returns
+    -------
+    Columns ``earthquake``, ``floor``, ``motion``, ``amplitude_g`` [g] and ``overturned`` (0 or 1).
     """
     tables = []
     for part in parts:
-        step = 1 if most_levels is None else -(-part.amplitude_g.size // most_levels)
+        step = 1
+        if most_levels is not None:
+            step = math.ceil(part.amplitude_g.size / most_levels)
         tables.append(part.rows(("earthquake", "floor", "motion"), step))
     return pd.concat(tables, ignore_index=True).astype({"overturned": np.int64})
 
@@ -244,10 +262,8 @@ def floor_curves(
         measure.label: measure.floor_label for measure in intensity_measures()
     }
     systems = {system.name: system for system in study.configurations}
-    rocks_at_once, level = (
-        not (study.slides or study.vertical),
-        study.fragility.confidence,
-    )
+    rocks_at_once = not (study.slides or study.vertical)
+    level = study.fragility.confidence
     fractions = []
     rows = []
     for (name, floor), ida in ida_curves[OVERTURNS].items():
@@ -311,11 +327,9 @@ def export_curves(
         stem = f"fragility_{name}" + (
             f"_{file_name(str(floor))}" if height != 0 else ""
         )
-        xml, csv, json = (
-            folder / f"{stem}.xml",
-            folder / f"{stem}.csv",
-            folder / f"{stem}.json",
-        )
+        xml = folder / f"{stem}.xml"
+        csv = folder / f"{stem}.csv"
+        json = folder / f"{stem}.json"
         if height == 0:
             # the formats know the ground by an empty floor, whatever its user calls it
             write_nrml(

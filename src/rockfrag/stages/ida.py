@@ -235,7 +235,7 @@ def _shaken(
     scales: NDArray[np.float64],
     threads: int,
 ) -> Outcomes:
-    """Outcomes of one configuration under every motion at every scale."""
+    """Outcomes of one configuration under every motion at every scale; ``scales``: shape (motions, scales)."""
     with warnings.catch_warnings():
         # told of in the column minimum_gravity_ratio and in the report
         warnings.simplefilter("ignore", LightBodies)

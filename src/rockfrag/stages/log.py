@@ -105,6 +105,7 @@ def in_words(error: Exception) -> str:
 
 
 def _fail(name: str, sentence: str, path: str) -> None:
+    """Say in one line which job failed and why, and end with the exit code 1."""
     line = " ".join(sentence.split())
     print(f"{name} failed: {line:.500} (log: {path})", file=sys.stderr, flush=True)
     sys.exit(1)
@@ -133,6 +134,7 @@ def last_seconds(path: Path) -> float | None:
 
 
 def _lines(path: Path) -> list[str]:
+    """Lines of a log; none where it is not there."""
     try:
         return path.read_text(encoding="utf-8").splitlines()
     except FileNotFoundError:

@@ -49,7 +49,7 @@ lie as far from simulated ones (docs/toppling-velocity.md)."""
 
 @dataclass(frozen=True)
 class BlindAnswer:
-    """Median of the fragility, blind and measured."""
+    """Median of the fragility, blind and measured, in the unit of an intensity measure."""
 
     measured: float  # Measured median
     # Median over the ways in which the object may stand, with 5 and 95 % of them
@@ -90,19 +90,31 @@ class BlindAnswer:
         return float(stats.norm.cdf(self._standard_scores(error)).mean())
 
     def density(self, error: float) -> float:
-        """Density of ln of the measured median in the ways to stand, with an error of the model, its slope."""
+        """Probability density of ln of the measured median, the slope of :meth:`transform`.
+
+        Parameters
+        ----------
+        error : standard deviation of ln median by which the model errs [-]
+
+        Returns
+        -------
+        The density [-], mean over the ways to stand.
+        """
         width = math.hypot(error, self.sampling)
         return float(stats.norm.pdf(self._standard_scores(error)).mean()) / width
 
     def _standard_scores(self, error: float) -> Floats:
-        """How many standard deviations the measured median lies above that of each way to stand, shape (ways,)."""
+        """Standard deviations by which the measured median lies above that of each way to stand, shape (ways,)."""
         # a way in which all topples has the median 0
         with np.errstate(divide="ignore"):
             ln_ratio = math.log(self.measured) - np.log(self.medians)
         return np.asarray(ln_ratio / math.hypot(error, self.sampling))
 
     def interval(self) -> tuple[float, float]:
-        """Limits of the median (90 %), of a model without error."""
+        """Limits (90 %) of the blind median, in the unit of the measure, for a model without error.
+
+        Spread of the ways to stand and sampling of the input motions are combined as independent, in ln median.
+        """
         low = math.hypot(math.log(self.median / self.lower), _Z * self.sampling)
         high = math.hypot(math.log(self.upper / self.median), _Z * self.sampling)
         return self.median * math.exp(-low), self.median * math.exp(high)
@@ -111,31 +123,73 @@ class BlindAnswer:
 def blind_answer(
     tests: MeasuredTests, measure: Floats, simulated: Flags
 ) -> BlindAnswer:
-    """Hold ways to stand, ``simulated`` (ways, tests), against what was measured; no way is chosen by it."""
-    measured = tests.overturned
-    seen = replace(tests, level=LEVEL)
-    table = seen.fragility(measure, {"blind": simulated.mean(axis=0)}).set_index("who")
-    each = curves_of(measure, simulated.astype(np.float64), np.ones(simulated.shape))
-    # a way in which nothing overturns has its median beyond all tests, one in which all does below them
-    bound = np.where(simulated.mean(axis=1) < measured.mean(), np.inf, 0.0)
-    medians = np.where(np.isfinite(each[:, 0]), each[:, 0], bound)
+    """Compare the median fragility of all ways to stand with the measured one; the tests choose no way.
+
+    Parameters
+    ----------
+    tests : measured outcomes, with their groups of input motions
+    measure : intensity of each test, shape (tests,)
+    simulated : whether the object overturns in each way, shape (ways, tests)
+
+    Returns
+    -------
+    The blind and the measured median, in the unit of the measure.
+
+    Raises
+    ------
+    InputError : where outcomes do not rise with the measure
+    """
+    medians, dispersion = _curves_of_ways(tests, measure, simulated)
     places = [(1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2]
-    low, middle, high = np.quantile(medians, places, method="nearest")
-    theta = float(table["theta"].to_dict()["measured"])
-    ratio = table.loc["blind", ["theta_ratio_lower", "theta_ratio_upper"]].astype(float)
-    if not (np.isfinite([theta, *ratio]).all() and 0 < middle < math.inf):
+    lower, middle, upper = np.quantile(medians, places, method="nearest").tolist()
+    theta, sampling = _measured_curve(tests, measure, simulated)
+    if not (np.isfinite([theta, sampling]).all() and 0 < middle < math.inf):
         raise InputError(
             "the outcomes do not rise with the measure, so they have no median."
         )
-    sampling = float(np.log(ratio.iloc[1] / ratio.iloc[0])) / (2 * _Z)
-    dispersion = float(np.nanmedian(each[:, 1]))
     return BlindAnswer(
-        theta, float(middle), float(low), float(high), sampling, dispersion, medians
+        measured=theta,
+        median=middle,
+        lower=lower,
+        upper=upper,
+        sampling=sampling,
+        dispersion=dispersion,
+        medians=medians,
     )
 
 
+def _curves_of_ways(
+    tests: MeasuredTests, measure: Floats, simulated: Flags
+) -> tuple[Floats, float]:
+    """Median of each way to stand, in the unit of the measure, shape (ways,), and their middle dispersion [-].
+
+    A way without a curve has its median beyond all tests (infinite) where less overturns than was measured, and
+    below them all (zero) otherwise.
+    """
+    outcomes, all_tests = simulated.astype(np.float64), np.ones(simulated.shape)
+    theta, beta = curves_of(measure, outcomes, all_tests).T
+    overturns_less = simulated.mean(axis=1) < tests.overturned.mean()
+    bound = np.where(overturns_less, np.inf, 0.0)
+    return np.where(np.isfinite(theta), theta, bound), float(np.nanmedian(beta))
+
+
+def _measured_curve(
+    tests: MeasuredTests, measure: Floats, simulated: Flags
+) -> tuple[float, float]:
+    """Measured median, in the unit of the measure, and the standard error of ln(blind over measured median) [-].
+
+    The blind outcome of a test is the fraction of ways in which it overturns; NaN where a curve does not rise.
+    """
+    blind = {"blind": simulated.mean(axis=0)}
+    table = replace(tests, level=LEVEL).fragility(measure, blind).set_index("who")
+    theta = float(table["theta"].to_dict()["measured"])
+    low = float(table["theta_ratio_lower"].to_dict()["blind"])
+    high = float(table["theta_ratio_upper"].to_dict()["blind"])
+    return theta, float(np.log(high / low)) / (2 * _Z)
+
+
 def model_error(answers: Sequence[BlindAnswer]) -> tuple[float, float]:
-    """Standard deviation of ln median that blind answers show [-], and what of it is beyond the ways to stand.
+    """Return the error of blind answers, a standard deviation of ln median [-], and its part beyond ways to stand.
 
     Of each body the measured median has a probability integral transform in the ways to stand widened by an error
     of the model; the slope of that transform is the likelihood of the error. Before any body it is half-normal
@@ -169,9 +223,17 @@ def blind_of(
     motions: Sequence[Motion | GroundMotion],
     in_space: int = 0,
 ) -> dict[str, BlindAnswer]:
-    """Blind answers of a campaign, by measure, that in which outcomes scatter least first.
+    """Simulate a campaign blind and compare its median with the measured one, by each intensity measure.
 
-    A scan is simulated in space in the first ``in_space`` ways to stand; 0 for all of them in the plane.
+    Parameters
+    ----------
+    study, campaign : configuration, and the tests with their measures
+    motions : of the table, one a test
+    in_space : ways to stand in which a scan is simulated in space; 0 for all of them in the plane
+
+    Returns
+    -------
+    Blind answers by name of the measure; first the measure in which outcomes scatter least.
     """
     if "pedestal" in study.object:
         raise InputError(

@@ -128,6 +128,7 @@ def _motions_by_kind(study: Study, row: dict[str, Any]) -> dict[str, list[Motion
 
 
 def _floors(study: Study, ground: Motion, vertical: bool = False) -> list[Motion]:
+    """Motions of the ground and of the floors of a building, if the study has one."""
     if study.building is None:
         return [on_the_ground(ground)]
     return (vertical_motions if vertical else floor_motions)(study.building, ground)

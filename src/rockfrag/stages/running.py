@@ -123,10 +123,16 @@ def run_job(
     threads: int,
     log_file: str,
 ) -> None:
-    """Run a stage of a study (``module:function``), as a job of the workflow does, and write what it yields.
+    """Run a stage of a study, as a job of the workflow does, and write what it yields.
 
-    Inputs and outputs are the paths that the rule declares; the stem of the log names the job. For ``part`` see
-    :class:`rockfrag.stages.job.Job`.
+    Parameters
+    ----------
+    stage : ``module:function``
+    config, study_file : configuration of the study, and the file that it was read from
+    inputs, outputs : paths that the rule of the workflow declares
+    part : number of the job's part of the motions, see :class:`rockfrag.stages.job.Job`
+    threads : to use
+    log_file : its stem names the job
     """
     end_with_run()
     module, _, function = stage.partition(":")

@@ -142,7 +142,11 @@ def as_accelerations(motion: Motion | GroundMotion) -> Motion:
 
 
 def _triangles(steps: VelocitySteps) -> Motion:
-    """Accelerations of jumps on a still ground, with a second after them."""
+    """Accelerations [m/s²] of the horizontal jumps of a still ground, with a second after them.
+
+    A jump is one sample, a triangle as high as the jump over the sampling interval, a millisecond.
+    """
+    # a sample is left before a jump at the start, from which its triangle rises
     places = np.rint(steps.times / SHORT).astype(int) + 1
     samples = np.zeros(int(places[-1]) + round(1 / SHORT))
     np.add.at(samples, places, steps.horizontal / SHORT)

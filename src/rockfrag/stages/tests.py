@@ -146,12 +146,19 @@ def validity_table(
 ) -> pd.DataFrame:
     """Simulate tests once more, each at its reported amplitude, and look at the contact forces.
 
-    ``tests`` are of one definition, one repetition. One row per test with an amplitude, ``MOST_TESTED`` of a
-    configuration at most: ``test``, ``object``, ``pedestal``, ``earthquake``, ``floor``, ``motion``,
-    ``amplitude_g``, ``friction_demand`` (largest |T|/N at any interface [-]), ``least_normal_force_n`` (least N
-    at any interface [N]; ≤ 0 where a block would have jumped) and ``unstable_distance`` (how near the response
-    came to an unstable equilibrium). With friction also ``peak_slip_m``, the largest displacement along any
-    interface, and ``flights``.
+    Parameters
+    ----------
+    tests : of one definition, one repetition
+    configurations, motions : systems, and motions by name
+    threads : threads to use
+
+    Returns
+    -------
+    One row per test with an amplitude, ``MOST_TESTED`` of a configuration at most: ``test``, ``object``,
+        ``pedestal``, ``earthquake``, ``floor``, ``motion``, ``amplitude_g``, ``friction_demand`` (largest |T|/N at
+        any interface [-]), ``least_normal_force_n`` (least N at any interface [N]; ≤ 0 where a block would have
+        jumped) and ``unstable_distance`` (how near the response came to an unstable equilibrium). With friction
+        also ``peak_slip_m``, the largest displacement along any interface, and ``flights``.
     """
     known = tests[tests["amplitude_g"].notna()]
     known = known[_looked_at(known["configuration"])].reset_index(drop=True)

@@ -99,7 +99,17 @@ def _write_json(content: Any, file: Path) -> None:
 def medians_and_surfaces(
     records: Records, extent: Extent, standing: str, measure: str
 ) -> tuple[pd.DataFrame, list[dict[str, Any]]]:
-    """Medians and surfaces of a standing in a measure, judged by sizes that the fit has not seen."""
+    """Medians and surfaces of a standing in a measure, judged by sizes that the fit has not seen.
+
+    Parameters
+    ----------
+    records, extent : motions, and how many sizes are shaken
+    standing, measure : how blocks stand, and the measure of the medians
+
+    Returns
+    -------
+    The medians, a row a size and limit state, and a row a surface.
+    """
     sizes = grid_of_sizes(*(extent.plane if standing == "plane" else extent.space))
     others = random_sizes(extent.held_out, SEED)
     weights, rows, tables = records.weights(standing), [], []
@@ -172,7 +182,12 @@ def _table(sizes: Floats, medians: Floats, dispersions: Floats) -> pd.DataFrame:
 def pieces_table(
     shaken: ShakenPieces, standings: Sequence[str] = STANDINGS
 ) -> pd.DataFrame:
-    """Pieces of furniture with published medians and simulated ones, and their ratios over both."""
+    """Pieces of furniture with published medians and simulated ones, and their ratios over both.
+
+    Parameters
+    ----------
+    shaken, standings : the pieces under the records, and how they stand
+    """
     records = shaken.records
     kaneko = [kaneko_velocity(*size) for size in shaken.sizes.tolist()]
     table = shaken.pieces.assign(kaneko_m_s=kaneko)
@@ -209,7 +224,13 @@ def flatness_table(medians: pd.DataFrame) -> pd.DataFrame:
 def study(
     records: Records, extent: Extent, folder: Path
 ) -> tuple[Mapping[str, pd.DataFrame], Any]:
-    """All tables by name, and the rows of the surfaces."""
+    """All tables by name, and the rows of the surfaces.
+
+    Parameters
+    ----------
+    records, extent : motions, and how many sizes are shaken
+    folder : in which what was computed before is kept
+    """
     tables, rows = [], []
     for table, some in kept_surfaces(records, extent, folder):
         tables.append(table)

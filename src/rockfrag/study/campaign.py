@@ -98,6 +98,7 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
     fetched = {path for _, _, path in fetch}
 
     def existing(key: str, name: str) -> Path:
+        """Path of a file beside the study, which is there or will be fetched."""
         path = beside(source, name)
         if not is_file(path) and path not in fetched:
             raise InputError(
@@ -148,10 +149,11 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
 
 
 def _check_unknowns(content: Mapping[str, Any], source: Path) -> None:
-    """Refuse ranges of unknowns that end before they begin, and a size of what has one of its own."""
+    """Refuse ranges of unknowns that end before they begin, and an unknown ``size`` that a mesh fixes."""
     for key, (low, high) in content["unknowns"].items():
-        above = ", above 0" if key == "contact_tolerance_mm" else ""
-        if low > high or (above and low <= 0):
+        must_be_positive = key == "contact_tolerance_mm"
+        above = ", above 0" if must_be_positive else ""
+        if low > high or (must_be_positive and low <= 0):
             raise InputError(
                 f"{source}: key unknowns.{key}: expected the lowest value first{above}, found [{low}, {high}]."
             )

@@ -66,14 +66,22 @@ def read_configurations(
     blocks: Mapping[str, Block],
     isolators: Mapping[str, Support] = MappingProxyType({}),
 ) -> tuple[list[System], dict[str, str]]:
-    """Read which block stands on which; a system has the configuration's name, and its bodies those of the blocks.
+    """Read which block stands on which; systems have the configurations' names, their bodies those of the blocks.
 
     Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none. Several blocks
     under an object are named from above, ``base|plinth``; they may stand behind the object too,
     ``venus|base|plinth``, and the lowest may be an isolator. What holds it stands in the columns of
     :mod:`rockfrag.study.holding`: ``wall_m``, ``putty_n``, ``cord_n_m`` and others. ``counterpart`` is the
-    arrangement with which one is compared, where that is not its object alone on the floor; these are returned by
-    name behind the systems.
+    arrangement with which one is compared, where that is not its object alone on the floor.
+
+    Parameters
+    ----------
+    path : table, a row a configuration
+    blocks, isolators : of the study, by name
+
+    Returns
+    -------
+    The systems, and the name of the counterpart by that of the configuration.
     """
     found: dict[str, System] = {}
     checked: dict[str, str] = {}
@@ -120,7 +128,7 @@ def read_configurations(
 def _check_block(
     row: Row, column: str, name: str, blocks: Container[str], known: Sequence[str]
 ) -> None:
-    """Refuse the name of a block that no specimen has; ``known`` are those of all specimens."""
+    """Refuse the ``name`` in a column of a row that no block has; ``known`` are those of all specimens."""
     if name not in blocks:
         raise row.error(
             column, f"expected one of the specimens {', '.join(known)}, found {name}"
@@ -179,6 +187,7 @@ def with_contacts(
 
 
 def _with_restitution(system: System, measured: Mapping[str, Any], law: str) -> System:
+    """System with the measured restitution of its bodies by name, as far as it was measured."""
     each = [measured.get(name) for name in system.names]
     value = each if system.count > 1 else each[0]
     return system_of(system, restitution=MeasuredRestitution(value, law))  # type: ignore[arg-type]

@@ -201,7 +201,10 @@ def _largest_factor(motions: Mapping[str, Any]) -> float:
 def _used(
     source: Path, key: str, names: Sequence[str] | None, known: Sequence[str], what: str
 ) -> list[str]:
-    """Names that a study uses, in its order; all that are known if it gives none."""
+    """Names that a study uses, in its order; all that are known if it gives none.
+
+    ``source``, ``key``: file and key in messages; ``what``: words for what is named.
+    """
     for i, name in enumerate(names or ()):
         if name not in known:
             raise InputError(
@@ -243,6 +246,7 @@ def _check_vertical(study: Study) -> None:
 
 
 def _check_measured_tests(study: Study, path: Path) -> None:
+    """Refuse a table of tests with an object that is none of the specimens."""
     from rockfrag.shaketable.tests_table import read_measured
 
     known = list(study.specimens)

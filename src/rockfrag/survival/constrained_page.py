@@ -70,7 +70,10 @@ def write_constrained(
 
 
 def weights_table(found: Constrained) -> pd.DataFrame:
-    """Weights by branch, with the columns of OpenQuake's realizations and the weight before."""
+    """Weights by branch, with the columns of OpenQuake's realizations and the weight before.
+
+    A branch of OpenQuake is called ``rlz-NUMBER PATH``; one without a number gets that of its row.
+    """
     table = found.result.table()
     numbers = table["branch"].str.extract(r"^rlz-(\d+)")[0]
     paths = table["branch"].str.replace(r"^rlz-\d+ ?", "", regex=True)
@@ -125,6 +128,7 @@ def _assumed(found: Constrained, texts: Catalogue) -> pd.DataFrame:
 
 
 def _assumption(name: str) -> Finding:
+    """An assumption in words, by its name."""
     if name == "in_space":
         return finding(ASSUMPTIONS[name], less=whole(100 * (1 - IN_SPACE)))
     return finding(ASSUMPTIONS[name])
@@ -149,6 +153,7 @@ def _hazard_said(found: Constrained) -> Finding:
 
 
 def _branches_said(found: Constrained) -> Finding:
+    """How many branches are as good as ruled out, in words."""
     return finding(
         "site_ruled_out",
         count=len(found.ruled_out),
@@ -330,6 +335,7 @@ def _branch_table(found: Constrained, texts: Catalogue) -> Markup:
 
 
 def _object_table(found: Constrained, texts: Catalogue) -> Markup:
+    """Table of what each object says, alone and beside the others."""
     columns = (
         column("object", texts.text("site_column_object")),
         column("information_bit", texts.text("site_column_bit"), decimals=2),
@@ -340,6 +346,7 @@ def _object_table(found: Constrained, texts: Catalogue) -> Markup:
 
 
 def _assumption_table(found: Constrained, texts: Catalogue) -> Markup:
+    """Table of the ratio of levels with each assumption in turn."""
     columns = (
         column("assumption", texts.text("site_column_assumption")),
         column("level_ratio", texts.text("site_column_level"), decimals=2),

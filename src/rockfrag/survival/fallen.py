@@ -270,7 +270,11 @@ def _axis(
     motions: MotionSet,
     posterior: ShakingPosterior,
 ) -> ShakingAxis | None:
-    """Axis along which the ground shook most, by the azimuths of falls and where motions let stones fall."""
+    """Axis along which the ground shook most; None where no group has azimuths and records with both components.
+
+    Where motions let stones fall, at levels that count by the ``posterior``, is compared with the azimuths of
+    falls.
+    """
     measured, levels = [], None
     for group, each in zip(groups, shaken, strict=True):
         here = motions.at(group.request.place)
@@ -295,9 +299,13 @@ class _Shaken:
     """A group under the motions of a set, at levels of PGV of the ground."""
 
     falls: Falls
-    levels: Floats
-    accelerations: Floats  # PGA of each motion at each level [g]
-    allowed: Floats
+    levels: Floats  # of PGV, rising [cm/s], shape (levels,)
+    accelerations: (
+        Floats  # PGA of each motion at each level [g], shape (motions, levels)
+    )
+    allowed: (
+        Floats  # 1 where a motion can be scaled to the level, else 0, of that shape
+    )
     slenderness: float  # Change of ln level with ln slenderness [-]
 
 
@@ -310,6 +318,7 @@ def _shaken(group: Observed, motions: MotionSet, known: Knowledge) -> _Shaken:
     shaking = make_intensity_levels(here, PGV)
     (found,) = shaking.outcomes_of([objects])
     few = make_intensity_levels(here.thinned(), PGV, count=FEW_LEVELS)
+    # in space there is no restitution to vary
     idle = {"restitution"} if here.both else set()
     variants = [each for each in objects.variants() if each.name not in idle]
     sides = few.outcomes_of([side for each in variants for side in each.sides])
@@ -331,7 +340,9 @@ def _shaken(group: Observed, motions: MotionSet, known: Knowledge) -> _Shaken:
 
 
 def toppled_everywhere(found: ObjectOutcomes) -> Floats:
-    """Say whether each motion topples the object, beyond what it can be scaled to as at the next level.
+    """Say whether each motion topples the object at each level, also where it cannot be scaled so far.
+
+    There it does as at the nearest level to which it can.
 
     Parameters
     ----------
@@ -342,6 +353,7 @@ def toppled_everywhere(found: ObjectOutcomes) -> Floats:
     0 or 1 at each level, shape (motions, levels).
     """
     toppled, allowed = found.overturned, found.intensity_levels.allowed
+    # numbers of the levels, and of the first and last one that each motion can be scaled to
     place = np.arange(allowed.shape[1])
     first = allowed.argmax(axis=1)[:, np.newaxis]
     last = place[-1] - allowed[:, ::-1].argmax(axis=1)[:, np.newaxis]
@@ -352,7 +364,10 @@ def toppled_everywhere(found: ObjectOutcomes) -> Floats:
 def _shared(
     groups: Sequence[Observed], shaken: Sequence[_Shaken], known: Knowledge
 ) -> dict[str, float]:
-    """Standard deviation of ln level that all objects share, by what it comes from [-]."""
+    """Standard deviation of ln level that all objects share, by what it comes from [-].
+
+    The model's is that of the kind of body that it errs most in, unless it is stated.
+    """
     objects = [group.request.objects for group in groups]
     model = max(MODEL_ERRORS[each.measured_as].beyond for each in objects)
     found = {"model": known.shared_spread}

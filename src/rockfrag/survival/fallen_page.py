@@ -206,6 +206,7 @@ def _directions(found: FallenPlace, falls: FallDirection) -> list[Value]:
 
 
 def _direction(found: FallDirection) -> Said:
+    """Where falls point, or that they point nowhere, in words."""
     if not found.points_somewhere:
         return finding("fallen_nowhere", n=found.count, p=two(found.p_value))
     return finding(
@@ -217,6 +218,7 @@ def _direction(found: FallDirection) -> Said:
 
 
 def _hangs_on(found: FallenPlace) -> Said:
+    """Errors that objects share and have of their own, in words."""
     shared = [
         finding(COMMON_ERRORS[name], spread=two(spread))
         for name, spread in found.shared.items()

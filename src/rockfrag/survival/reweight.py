@@ -95,6 +95,7 @@ class Reweighted:
             np.exp(np.interp(-wanted, -rates, log_level, left=np.nan, right=np.nan))
             for rates in (before, after)
         ]
+        # ln rate after at the levels before
         at = np.interp(np.log(levels[0]), log_level, after)
         return pd.DataFrame(
             {
@@ -138,6 +139,7 @@ def reweight(site: Site, samples: int = SAMPLES) -> Reweighted:
     curves = [branch.curves for branch in site.branches]
     shaking = shaking_rates(curves, wanted, site.velocity, reach)
     indices = [body.index(shaking) for body in objects]
+    # number of earthquakes that would have toppled one, by draw and branch
     expected = np.zeros((samples, len(shaking.rates)))
     for draw, (error, exposure) in enumerate(zip(errors, years, strict=True)):
         # shape (objects, points of shaking)
@@ -189,7 +191,7 @@ def _toppling_earthquakes(
 def scaled(
     objects: Sequence[StandingObject], capacity: float = 1.0, age: float = 1.0
 ) -> tuple[StandingObject, ...]:
-    """Objects that withstand a factor more shaking, or have stood and been fragile a factor longer."""
+    """Objects that withstand a factor more shaking, or have stood and been fragile a factor longer [-]."""
     found = []
     for body in objects:
         c = body.coefficients

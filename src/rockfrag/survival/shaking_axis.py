@@ -101,6 +101,7 @@ def predicted_falls(block: Block, motions: MotionSet) -> PredictedFalls:
 
 
 def _turned(components: Sequence[Motion], angle: float) -> GroundMotion:
+    """Motion of the ground along axes that are turned by an angle [degrees] from both components."""
     first, other = components
     return GroundMotion(rotate(first, other, angle), rotate(first, other, angle + 90.0))
 
@@ -171,9 +172,11 @@ def shaking_axis(
 def axis_of(probability: Floats) -> ShakingAxis:
     """Mean axis of a posterior, and the interval about it.
 
+    An axis is the same after half a turn, so that angles are doubled for the mean.
+
     Parameters
     ----------
-    probability : of each of the angles, of sum 1, shape (angles,)
+    probability : of each of ``ANGLES``, of sum 1, shape (angles,)
 
     Returns
     -------

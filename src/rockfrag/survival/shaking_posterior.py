@@ -107,7 +107,10 @@ class Prior:
 
 
 def _log_met(log_pga: Floats) -> Floats:
-    """Logarithm of how often motions of a set have the PGA that they have at a PGV, shape (motions, 1)."""
+    """Logarithm of how often motions of a set have the PGA that they have at a PGV, shape (motions, 1).
+
+    Their ln PGA/PGV are taken for normal. ``log_pga``: shape (motions, levels).
+    """
     ratio = log_pga[:, :1] - log_pga[:, :1].mean()
     spread = float(ratio.std())
     return np.asarray(-0.5 * (ratio / spread) ** 2 if spread > 0 else 0.0 * ratio)
@@ -141,6 +144,7 @@ class ShakingPosterior:
         return self._median_and_limits(self.prior)
 
     def _median_and_limits(self, probability: Floats) -> tuple[float, float, float]:
+        """Median and both limits of the levels with a probability, shape (levels,) [cm/s]."""
         low, middle, high = np.exp(_quantiles(np.log(self.levels), probability))
         return float(middle), float(low), float(high)
 
@@ -261,6 +265,12 @@ def _mean_over_shared(logs: Floats, x: Floats, spread: float) -> Floats:
 
     Whoever withstands exp(s) times as much is as likely to have fallen at a level as others are at one that is
     lower by s, so that the mean over s is one over levels, motion by motion.
+
+    Parameters
+    ----------
+    logs : ln likelihood, shape (motions, levels), which is that of the result
+    x : ln of the levels, shape (levels,)
+    spread : standard deviation of s [-]
     """
     peaks = logs.max(axis=1, keepdims=True)
     means = smoothed(x, np.exp(logs - peaks), spread)
@@ -268,7 +278,7 @@ def _mean_over_shared(logs: Floats, x: Floats, spread: float) -> Floats:
 
 
 def _log_binomial(fallen: int, count: int, chance: Floats) -> Floats:
-    """Logarithm of the binomial probability of so many falls."""
+    """Logarithm of the probability of so many falls of ``count``, each with a chance [-], of the shape of that."""
     p = np.clip(chance, LEAST, 1 - LEAST)
     choices = special.gammaln(count + 1) - special.gammaln(fallen + 1)
     choices -= special.gammaln(count - fallen + 1)
@@ -276,12 +286,16 @@ def _log_binomial(fallen: int, count: int, chance: Floats) -> Floats:
 
 
 def _normalized(logs: Floats) -> Floats:
+    """Weights of sum 1 from their logarithms, of the same shape."""
     weights = np.exp(logs - logs[np.isfinite(logs)].max())
     return np.asarray(weights / weights.sum())
 
 
 def _quantiles(x: Floats, probability: Floats) -> Floats:
-    """Quantiles of a density on evenly spaced points, each of which stands for what lies nearest to it."""
+    """Quantiles ``_PARTS`` of a density on evenly spaced points x, each of which stands for what is nearest to it.
+
+    ``probability``: of each point, shape (n,).
+    """
     ends = np.concatenate([[x[0]], (x[1:] + x[:-1]) / 2, [x[-1]]])
     cumulative = np.concatenate([[0.0], np.cumsum(probability)])
     return np.asarray(np.interp(_PARTS, cumulative / cumulative[-1], ends))

@@ -59,8 +59,14 @@ def read_branches(
 ) -> list[Branch]:
     """Read the branches of a site in the order of the file, with weights of sum 1 to the last digit.
 
-    ``paths`` are tables of branches, one a measure; or, with OpenQuake's file of ``realizations``, its files of
-    hazard curves.
+    Parameters
+    ----------
+    paths : tables of branches, one a measure; or OpenQuake's files of hazard curves
+    realizations : OpenQuake's file of realizations, with such files
+
+    Returns
+    -------
+    The branches with their curves, the same measures for all.
     """
     named = _realizations(realizations) if realizations else {}
     for path in paths:
@@ -107,13 +113,14 @@ def _check(branches: Sequence[Branch], where: str) -> None:
 
 
 def _names(branch: Branch) -> str:
+    """Measures of which a branch has curves, in words."""
     return " and ".join(sorted(measure.imt for measure in branch.curves)) or "nothing"
 
 
 def _of_table(
     path: str | os.PathLike[str], named: dict[str, Branch]
 ) -> Iterator[tuple[str, Branch, HazardCurve]]:
-    """Yield what messages call it, branch and curve of every branch of a table; new ones come to those named."""
+    """Yield each branch of a table with what messages call it and its curve; new ones join those ``named``."""
     every, curve = read_levels(path, labels=("branch", "weight"))
     rows: dict[str, list[Row]] = {}
     for row in every:
@@ -126,10 +133,8 @@ def _of_table(
                     "weight",
                     f"branch {name} has the weight {weight:g} in an earlier row",
                 )
-        branch, called = (
-            named.setdefault(name, Branch(name, weight)),
-            f"branch {name[:60]}",
-        )
+        branch = named.setdefault(name, Branch(name, weight))
+        called = f"branch {name[:60]}"
         if branch.weight != weight:
             raise InputError(
                 f"{path}: {called} has the weight {weight:g}, and {branch.weight:g} elsewhere."
@@ -140,7 +145,11 @@ def _of_table(
 def _of_openquake(
     path: str | os.PathLike[str], realizations: object, named: Mapping[str, Branch]
 ) -> tuple[str, Branch, HazardCurve]:
-    """Return what messages call it, branch and curve of a file of OpenQuake's, by its first line or its name."""
+    """Return the branch of a file of OpenQuake's, with what messages call it and its curve.
+
+    The realization stands in the first line of the file or in its name; ``named``: branches by its number;
+    ``realizations``: file that lists them, for messages.
+    """
     text = read_text(path, LARGEST_FILE)
     found = _RLZ.search(text.partition("\n")[0]) or _RLZ.search(Path(path).name)
     if found is None:
@@ -151,7 +160,8 @@ def _of_openquake(
     number = str(int(found[1]))
     if number not in named:
         raise InputError(f"{path}: realization {number} is not in {realizations}.")
-    return f"realization {number}", named[number], read_openquake(text, str(path))[0]
+    curve = read_openquake(text, str(path)).curve
+    return f"realization {number}", named[number], curve
 
 
 _RLZ = re.compile(r"rlz-(\d+)")
@@ -210,9 +220,19 @@ def shaking_rates(
 ) -> ShakingRates:
     """Points of shaking at a site in all measures that the objects are sensitive to, the same for all branches.
 
-    ``velocity`` is the PGV that comes with a PGA, where PGV is wanted and the branches have no curve of it, or
-    both are wanted; ``reach`` are the levels between which fragilities change, a range to be covered. The points
-    lie on a grid of levels of the one measure, and for PGA and PGV on nodes of the velocity at each.
+    The points lie on a grid of levels of the one measure, and for PGA and PGV on nodes of the velocity at each.
+
+    Parameters
+    ----------
+    branches : hazard curves of each branch by measure
+    wanted : measures of the objects' fragilities
+    velocity : PGV that comes with a PGA, where PGV is wanted and the branches have no curve of it, or both are
+        wanted
+    reach : levels between which fragilities change, a range to be covered
+
+    Returns
+    -------
+    The points with their rates in each branch.
     """
     measures = set(branches[0])
     if len(wanted) == 1 and wanted <= measures:
@@ -221,6 +241,7 @@ def shaking_rates(
         return ShakingRates({measure: levels}, rates)
     if wanted <= {PGA, PGV} and PGA in measures and velocity is not None:
         levels, rates = _on_grid([curves[PGA] for curves in branches], reach)
+        # the rate of a level is divided over the velocities that may come with it
         nodes, weight = np.polynomial.hermite_e.hermegauss(NODES)
         ratio = velocity.median_s * np.exp(velocity.sd_ln * nodes)
         pgv = VELOCITY_PER_G * (levels[:, np.newaxis] * ratio).ravel()
@@ -241,7 +262,10 @@ def shaking_rates(
 def _on_grid(
     curves: Sequence[HazardCurve], reach: tuple[float, float]
 ) -> tuple[Floats, Floats]:
-    """Levels over all curves and the reach of the fragilities, and the rates that they stand for in each curve."""
+    """Levels over all curves and the reach of the fragilities, and the rates that they stand for in each curve.
+
+    Returned are the levels, shape (levels,), and annual rates [1/year], shape (curves, levels).
+    """
     known = np.concatenate([curve.levels for curve in curves])
     grid = np.geomspace(min(known.min(), reach[0]), max(known.max(), reach[1]), GRID)
     # a few hundred branches with levels of their own would make the grid needlessly fine
@@ -252,7 +276,18 @@ def _on_grid(
 
 
 def quantile_weights(values: Floats, weights: Floats, quantiles: Floats) -> Floats:
-    """Quantiles of values (branches, n) with weights of sum 1, interpolated in these, shape (quantiles, n)."""
+    """Quantiles of values with weights of sum 1, interpolated in the sum of the weights.
+
+    Parameters
+    ----------
+    values : shape (branches, n)
+    weights : of the branches, shape (branches,)
+    quantiles : wanted [-], shape (quantiles,)
+
+    Returns
+    -------
+    The quantiles in the unit of the values, shape (quantiles, n).
+    """
     order = np.argsort(values, axis=0)
     cumulative = np.cumsum(weights[order], axis=0)
     ordered = np.take_along_axis(values, order, axis=0)
@@ -308,6 +343,7 @@ class StandingObject:
     def reach(self) -> tuple[float, float]:
         """Lowest and highest level of ``measure`` between which its fragility changes."""
         c0, c1, *others = self.coefficients
+        # in ln of the measure
         wide = TAIL * (1 / c1 + self.sd_ln)
         # the second measure moves the median by as much as PGV/PGA of 0.02 to 0.5 s may
         aside = [c * math.log(ratio) for c in others for ratio in (0.02, 0.5)] or [0.0]
@@ -325,7 +361,10 @@ class StandingObject:
         )
 
     def probability(self, index: Floats, error: float) -> Floats:
-        """Probability of toppling where the object withstands exp(error) times the shaking estimated."""
+        """Probability of toppling where the object withstands exp(error) times the shaking estimated [-].
+
+        ``index``: normal scores of points of shaking, shape (points,), which is that of the result.
+        """
         return np.asarray(special.ndtr(index - self.coefficients[1] * error))
 
 
@@ -335,9 +374,16 @@ def lognormal_coefficients(theta: float, beta: float) -> tuple[float, float]:
 
 
 def draw_errors(objects: int, shared: float, samples: int) -> tuple[Floats, Floats]:
-    """Draw standard normal errors, correlated as ``shared`` says [-], and uniform positions in ages.
+    """Draw errors of fragilities, and positions in ages, spread evenly (Sobol; a power of two).
 
-    Both are spread evenly (Sobol; a power of two) and have the shape (samples, objects).
+    Parameters
+    ----------
+    objects, samples : their numbers
+    shared : correlation of the errors of two objects [-]
+
+    Returns
+    -------
+    Standard normal errors, and uniform positions from 0 to 1, shape (samples, objects) each.
     """
     sobol = stats.qmc.Sobol(
         2 * objects + 1, scramble=True, rng=np.random.default_rng(0)
@@ -345,9 +391,8 @@ def draw_errors(objects: int, shared: float, samples: int) -> tuple[Floats, Floa
     drawn = sobol.random(samples)
     normal = special.ndtri(np.clip(drawn[:, : objects + 1], 1e-12, 1 - 1e-12))
     common, own = normal[:, :1], normal[:, 1:]
-    return math.sqrt(shared) * common + math.sqrt(1.0 - shared) * own, drawn[
-        :, objects + 1 :
-    ]
+    errors = math.sqrt(shared) * common + math.sqrt(1.0 - shared) * own
+    return errors, drawn[:, objects + 1 :]
 
 
 RECORDS = "resources/records"  # Folder of fetched records
@@ -430,7 +475,14 @@ def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Si
 def _objects(
     given: Sequence[Mapping[str, Any]], site: Site, folder: Path, records: Path
 ) -> list[StandingObject]:
-    """The objects that stand at a site, of their settings."""
+    """The objects that stand at a site, of their settings.
+
+    Parameters
+    ----------
+    given : settings of each
+    site : its branches and velocity
+    folder, records : of the files that settings name, and of fetched records
+    """
     found: list[StandingObject] = []
     for at, settings in enumerate(given, start=1):
         name = settings.get("name", f"object {at}")
@@ -460,9 +512,21 @@ def _simulated(
     folder: Path,
     records: Path,
 ) -> tuple[tuple[float, ...], float]:
-    """Coefficients of the fragility, and the spread of what is not known of its median in ln level [-].
+    """Fragility of an object of a site that is simulated, as ``rockfrag assess`` does.
 
-    The object is simulated as ``rockfrag assess`` does; with the site's velocity known in PGA and PGV/PGA.
+    With the site's velocity known it is one in PGA and PGV/PGA.
+
+    Parameters
+    ----------
+    known : what the site says of the object, with ``statue``
+    measure : of the site's hazard
+    site : where it stands
+    folder : below which its file lies
+    records : folder of fetched records
+
+    Returns
+    -------
+    Coefficients of the fragility, and the spread of what is not known of its median in ln level [-].
     """
     # imported when an object is simulated: others should not wait for numba
     from rockfrag.assess.answer import assess
@@ -520,7 +584,10 @@ def _statue_of(
 def _stated(
     settings: Mapping[str, Any], measure: IntensityMeasure
 ) -> tuple[float, ...]:
-    """Coefficients of a fragility that is stated: by median and β, or as they are."""
+    """Coefficients of a fragility that is stated, by median and β or as they are: (c0, c1) or (c0, c1, c2).
+
+    ``measure``: of c1 and of the median.
+    """
     coefficients = settings.get("coefficients")
     if (coefficients is None) == ("median" not in settings):
         raise InputError(
@@ -549,11 +616,9 @@ def _stated(
 
 
 def _age(settings: Mapping[str, Any]) -> Age:
-    """For how long an object has stood: one number of years, a range, or a median with its spread."""
-    age, longest = (
-        settings["age_years"],
-        float(settings.get("fragile_for_years", math.inf)),
-    )
+    """For how long an object has stood [years]: one number, a range, or a median with its spread."""
+    age = settings["age_years"]
+    longest = float(settings.get("fragile_for_years", math.inf))
     if isinstance(age, Mapping):
         return Age(age["median"], age["median"], age["sd_ln"], longest)
     low, high = age if isinstance(age, list) else (age, age)

@@ -325,10 +325,8 @@ class Stack:
 
     def rigidly_joined(self) -> Block:
         """Return the two as one rigid body, which is what rocks in pattern 3."""
-        whole, height = (
-            geometry.joined(self.pile),
-            self.lower.height + self.upper.height,
-        )
+        whole = geometry.joined(self.pile)
+        height = self.lower.height + self.upper.height
         return Block(
             self.lower.width, height, whole.mass, whole.inertia, whole.y, whole.x
         )

@@ -37,7 +37,7 @@ def nearest_edge(points: Points, count: int) -> tuple[float, float, float]:
 
 
 def _edge(points: Points, count: int, i: int) -> tuple[float, float, float]:
-    """Distance of an edge from the origin, and the direction across it, outwards."""
+    """Distance of edge i from the origin [m], and both components of the unit vector across it, outwards."""
     x, y = points[i][0], points[i][1]
     following = points[(i + 1) % count]
     along, up = following[0] - x, following[1] - y

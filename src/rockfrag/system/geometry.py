@@ -32,9 +32,10 @@ class Pile(NamedTuple):
     lean: float  # of the pedestal [rad]
     # of the middle of the statue's base from the middle of the pedestal's top [m]
     offset: float
-    # ends of the contact, likewise, and from the middle of the pedestal's base [m]
+    # left and right end of the contact, likewise
     low: float
     high: float
+    # the same points from the middle of the pedestal's base, x and y [m]
     left: tuple[float, float]
     right: tuple[float, float]
 
@@ -374,9 +375,11 @@ def pile_of(
     -------
     The :class:`Pile`.
     """
+    # ends of what the base shares with the top, from the middle of the top [m]
     low = max(-lower.b, offset - upper.b)
     high = min(lower.b, offset + upper.b)
     middle, on_contact = offset, upper
+    # a base that overhangs stands on what it shares
     if abs(offset) + upper.b > lower.b * (1 + 1e-12):
         middle = (low + high) / 2
         on_contact = Shape(

@@ -203,12 +203,17 @@ def edge_distances(corners: Floats) -> Floats:
 
 
 def _without_hardly_turning(corners: Floats) -> Floats:
-    """Leave out the corner nearest to the line past it, until few are left that are further than FLAT off it."""
+    """Leave out corners of a polygon that hardly turn, shape (n, 2) [m], until few are left.
+
+    Every time it is the corner that is least off the line from the one before it to the one after it, as long as
+    there are more than MOST_CORNERS, or it is less than FLAT of the polygon's size off.
+    """
     kept = corners
     size = float(np.ptp(corners, axis=0).max())
     while len(kept) > FEWEST_CARRY:
         chord = np.roll(kept, -1, axis=0) - np.roll(kept, 1, axis=0)
         side = kept - np.roll(kept, 1, axis=0)
+        # distance of each corner from its chord [m]
         off = np.abs(chord[:, 0] * side[:, 1] - chord[:, 1] * side[:, 0]) / np.hypot(
             *chord.T
         )

@@ -118,6 +118,7 @@ def files_of_mesh(path: Path) -> list[Path]:
 
 
 def _check_count(path: Path, triangles: int) -> None:
+    """Refuse a mesh of more triangles or points than are read."""
     if triangles > MOST_TRIANGLES:
         raise InputError(
             f"{path}: has {triangles} triangles or points, and a mesh of at most {MOST_TRIANGLES} is read; {_SIZE}"

@@ -175,7 +175,7 @@ class System:
 
     @cached_property
     def shapes(self) -> tuple[geometry.Shape, ...]:
-        """Each body as it stands by itself, of a planar system, as the kernels know it."""
+        """Each body of a planar system as it stands by itself, from below, as the kernels know it."""
         found = []
         for body, contact in zip(self.in_plane().bodies, self.contacts, strict=True):
             base, inertia = body.ends[0], body.inertia
@@ -207,15 +207,11 @@ class System:
         for k in range(1, self.count):
             shape, face = self.shapes[k], bodies[k - 1].ends[1]
             middle = self.contacts[k].offset[0] + bodies[k].ends[0].middle
-            low, high = (
-                max(face.left, middle - shape.b),
-                min(face.right, middle + shape.b),
-            )
-            found.append(
-                shape._replace(
-                    b=(high - low) / 2, x=shape.x + middle - (low + high) / 2
-                )
-            )
+            # ends of the contact: what of the base is over the face
+            low = max(face.left, middle - shape.b)
+            high = min(face.right, middle + shape.b)
+            aside = shape.x + middle - (low + high) / 2
+            found.append(shape._replace(b=(high - low) / 2, x=aside))
         return tuple(found)
 
 
@@ -356,7 +352,16 @@ def each_contact(
 def box(
     sides: Vector3, mass: float, inertia: Any, centre: Vector3, name: str = ""
 ) -> RigidBody:
-    """Return a body in space of width, depth and height [m], of uniform mass where inertia is None."""
+    """Return a box in space.
+
+    Parameters
+    ----------
+    sides : width along x, depth along y, and height [m]
+    mass : [kg]
+    inertia : about the centre of mass, a number or a tensor [kg m²]; None for one of uniform mass
+    centre : of mass, from the middle of the base [m]
+    name : of the body
+    """
     width, depth, height = sides
     x, y = width / 2, depth / 2
     outline = Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
@@ -377,7 +382,16 @@ def cylinder(
     *,
     name: str = "",
 ) -> RigidBody:
-    """Return a body in space with a round base and face [m], of uniform mass where inertia is None."""
+    """Return a body in space with a round base and face.
+
+    Parameters
+    ----------
+    diameter, height : [m]
+    mass : [kg]
+    inertia : about the centre of mass, a number or a tensor [kg m²]; None for one of uniform mass
+    centre : of mass, from the middle of the base [m]
+    name : of the body
+    """
     outline = Circle(diameter / 2)
     if inertia is None:
         across = round_inertia(diameter, height, mass)
@@ -434,6 +448,7 @@ def turned_about_vertical(system: System, angle_deg: float) -> System:
 
 
 def _turned_outline(outline: Polygon, sine: float, cosine: float) -> Polygon:
+    """Outline turned in the plan by an angle of this sine and cosine."""
     return Polygon(
         tuple(
             geometry.turned_in_plan(east, north, sine, cosine)
@@ -452,7 +467,7 @@ def stands(system: System) -> bool:
 
 
 def arms_above(system: System, k: int) -> tuple[tuple[float, float], ...]:
-    """From the left and the right end of contact k to the common centre of what stands on it (x, z) [m]."""
+    """Vectors from both ends of contact k, left and right, to the common centre of all on it, (x, z) [m]."""
     x, z = common_centre(system, k)
     bases = _bases(system)
     angle, origin, body = bases[k]
@@ -487,6 +502,8 @@ def rocking_shapes(system: System) -> list[geometry.Shape]:
     """
     shapes = list(system.carried)
     if system.count == 2:
+        # two may rock as one (pattern 3 of docs/derivation.md); of three and more, which pure rocking does not
+        # take, each is taken for itself
         shapes[0] = geometry.joined(system.pile)
     return shapes
 
@@ -541,7 +558,7 @@ def corners(system: System) -> list[tuple[float, float]]:
 
     Returns
     -------
-    (x, z) [m] of the left side of each body from below, then of its right one.
+    (x, z) [m] of four corners a body, from below: left low, left high, right low, right high.
     """
     found = []
     for k, (angle, (x, y), body) in enumerate(_bases(system)):
@@ -554,7 +571,11 @@ def corners(system: System) -> list[tuple[float, float]]:
 
 
 def _bases(system: System) -> list[tuple[float, tuple[float, float], RigidBody]]:
-    """Angle of the face [rad] that each planar body stands on, origin of its base [m], and the body."""
+    """How each planar body stands, from below.
+
+    Returned are the angle of the face below it [rad], clockwise, the origin of its base (x, z) from that of the
+    lowest one [m], and the body.
+    """
     bodies = system.in_plane().bodies
     angle, origin = 0.0, (0.0, 0.0)
     found = [(angle, origin, bodies[0])]

@@ -95,12 +95,14 @@ class Catalogue:
         return " ".join(self.lines(values))
 
     def _said(self, found: Finding) -> str:
+        """Words of a finding: its text with its values in their places."""
         values = dict(found.values)
         number = values.get("n")
         text = self.text(found.id, number if isinstance(number, int) else None)
         return _PLACE.sub(lambda place: self.say(values[place[1]]), text)
 
     def _listed(self, words: list[str]) -> str:
+        """Words one after the other with commas, and "and" before the last."""
         if len(words) < 2:
             return "".join(words)
         return f"{', '.join(words[:-1])} {self.text('and')} {words[-1]}"
@@ -121,6 +123,7 @@ class Catalogue:
         return self._local(significant(value, _DIGITS[form]))
 
     def _percent(self, value: float) -> str:
+        """A probability [-] in per cent; next to nothing and nearly all are said so."""
         if 0 < value < LEAST:
             return self.text("less_than").format(value=self._local("0.001"))
         if SURE < value < 1:
@@ -128,6 +131,7 @@ class Catalogue:
         return f"{self._local(significant(100 * value, 2 if value < 1 else 3))} %"
 
     def _ordinal(self, value: int) -> str:
+        """An ordinal number in words, or in digits with its ending."""
         names, endings = self.texts["ordinals"], self.texts["ordinal_endings"]
         if value < len(names):
             return str(names[value])
@@ -140,6 +144,7 @@ class Catalogue:
 
 @lru_cache(maxsize=8)
 def _read(folder: Path, language: str) -> Catalogue:
+    """Texts of a language; those that it lacks are of the first language."""
     texts = json.loads((folder / f"{FIRST}.json").read_text(encoding="utf-8"))
     if language != FIRST:
         own = (folder / f"{language}.json").read_text(encoding="utf-8")

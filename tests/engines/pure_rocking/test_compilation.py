@@ -246,3 +246,13 @@ def test_what_a_run_leaves_beside_the_source_does_not_change_its_digest(
     for name in ("a.cpython-311.pyc", "a.f-1.py311.nbi", "a.f-1.py311.1.nbc", "f.lock"):
         (tmp_path / "__pycache__" / name).write_text("x")
     assert job.package_digest.__wrapped__() == before
+
+
+def test_a_law_in_which_a_number_changes_is_compiled_anew():
+    def law(number: str):
+        given: dict = {}
+        exec(f"def rate(value): return {number} * value + (lambda: 1)()", given)
+        return given["rate"]
+
+    assert jit._compiled(law("0.5")) != jit._compiled(law("0.6"))
+    assert jit._compiled(law("0.5")) == jit._compiled(law("0.5"))

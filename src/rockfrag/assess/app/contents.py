@@ -223,10 +223,11 @@ def _draws(motions: MotionSet) -> dict[str, Any]:
     -------
     ``columns`` and ``size``: sources of uncertainty, and draws. ``normals``: standard normal numbers, float64,
     (size, columns). ``bins``: the bin of each among its source's, bytes, (columns, size). ``weights``: by the
-    number n of earthquakes, float64, (BLOCKS, n). Arrays are in base 64, row by row.
+    number n of earthquakes, of each and of the next one, float64, (BLOCKS, n + 1). Arrays are in base 64, by row.
     """
     count = len(set(motions.earthquakes))
     fewer = motions.with_both_components().thinned()
+    # every fourth motion
     fewest = motions.thinned().thinned()
     counts = {count, *(len(set(each.earthquakes)) for each in (fewer, fewest))}
     made = draws.make_draws(SOURCES_DRAWN, count)
@@ -240,7 +241,7 @@ def _draws(motions: MotionSet) -> dict[str, Any]:
 
 
 def _packed(values: Floats) -> str:
-    """Numbers as bytes in base 64, for the page's typed arrays."""
+    """Numbers as little-endian float64 in base 64, rows one after the other, for the typed arrays of the page."""
     return b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
 
 

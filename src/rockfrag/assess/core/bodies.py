@@ -29,7 +29,7 @@ HIGHER = 1.0 + 1e-9
 
 
 def shape_as_it_stands(block: Floats) -> Shape:
-    """The block as it stands."""
+    """The block, a row of seven numbers, as the shape that rocks (:class:`rockfrag.system.geometry.Shape`)."""
     inertia, centre = block[INERTIA], block[CG_HEIGHT]
     return shape_of(
         block[WIDTH], block[HEIGHT], block[MASS], inertia, centre, block[CG_OFFSET], 0.0
@@ -37,19 +37,23 @@ def shape_as_it_stands(block: Floats) -> Shape:
 
 
 def _copy(block: Floats, found: Floats) -> None:
+    """Copy the numbers of a block into ``found``, as many as that has."""
     for i in range(found.size):
         found[i] = block[i]
 
 
 def solid_mass(width: float, depth: float, height: float, is_round: bool) -> float:
-    """Mass of a box, or of a cylinder, of solid stone [kg]."""
+    """Mass of a box, or of a cylinder, of solid stone [kg], of sides or diameters and height [m]."""
     return STONE * width * depth * height * (math.pi / 4 if is_round else 1.0)
 
 
 def stretch(
     block: Floats, width: float, height: float, mass: float, found: Floats
 ) -> None:
-    """Move edges apart, raise the centre of gravity and add mass, by factors."""
+    """Fill ``found`` with a block whose edges are moved apart and whose centre of gravity and mass are changed.
+
+    ``width``, ``height``, ``mass``: factors on the width, the height of the centre and the mass [-].
+    """
     shape = shape_as_it_stands(block)
     found[WIDTH] = block[WIDTH] * width
     found[HEIGHT] = block[HEIGHT]
@@ -61,7 +65,10 @@ def stretch(
 
 
 def add_ballast(block: Floats, part: float, found: Floats) -> None:
-    """Add a part of the mass near the foot, in the middle of the base."""
+    """Fill ``found`` with a block that has a ``part`` of its mass added near the foot, in the middle of the base.
+
+    Centre and inertia follow from both masses by Steiner's rule.
+    """
     shape = shape_as_it_stands(block)
     added = part * shape.mass
     mass = shape.mass + added
@@ -79,7 +86,7 @@ def add_ballast(block: Floats, part: float, found: Floats) -> None:
 
 
 def make_plate(block: Floats, found: Floats) -> None:
-    """A square plate of steel under a block, wider than its base."""
+    """Fill ``found`` with a square plate of steel under a block, wider than its base; NaN: as it follows."""
     for place in (INERTIA, CG_HEIGHT, DEPTH):
         found[place] = math.nan
     found[WIDTH] = WIDER * block[WIDTH]
@@ -89,14 +96,14 @@ def make_plate(block: Floats, found: Floats) -> None:
 
 
 def make_lower(block: Floats, found: Floats) -> None:
-    """A block of another height of the same section and stone, in place of a pedestal."""
+    """Fill ``found`` with a block of another height, of the same section and stone, in place of a pedestal."""
     _copy(block, found)
     found[HEIGHT] = PEDESTAL_HEIGHT * block[HEIGHT]
     found[MASS] = PEDESTAL_HEIGHT * block[MASS]
 
 
 def join(lower: Floats, upper: Floats, found: Floats) -> None:
-    """Both blocks as one rigid block, the upper one on the middle of the lower one."""
+    """Fill ``found`` with both blocks as one rigid block, the upper one on the middle of the lower one."""
     whole = joined(
         pile_of(
             shape_as_it_stands(lower),
@@ -116,7 +123,7 @@ def join(lower: Floats, upper: Floats, found: Floats) -> None:
 
 
 def carries_plate(block: Floats, below: Floats) -> bool:
-    """Whether a plate under a block reaches no further than what it stands on, and so may carry it further out."""
+    """Whether a plate under a block reaches no further than what is below, and so may carry it further out."""
     return bool(WIDER * block[WIDTH] <= below[WIDTH])
 
 

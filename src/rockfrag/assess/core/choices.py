@@ -29,7 +29,7 @@ LEAVE, SECURE, MEASURE = 0, 1, 2
 
 
 def likelihood(probability: float) -> int:
-    """Step of the IPCC's scale: < 1, < 10, < 33 %, then up to 66, 90, 99 %, and above."""
+    """Step, 0 to 6, of a probability [-] in the IPCC's scale: < 1, < 10, < 33 %, up to 66, 90, 99 %, above."""
     for step in range(3):
         if probability < BELOW[step]:
             return step
@@ -50,7 +50,7 @@ def are_few(earthquakes: int) -> bool:
 
 
 def is_open(lower: float, upper: float) -> bool:
-    """Whether so few earthquakes leave every value possible."""
+    """Whether limits from 0 to 1 leave every value possible, as those of few earthquakes do."""
     return lower <= 0.0 and upper >= 1.0
 
 
@@ -58,7 +58,10 @@ def is_open(lower: float, upper: float) -> bool:
 
 
 def how_likely(few: bool, at_rest: bool, rocking: float) -> int:
-    """Say that earthquakes are few, that it does not move, that it hardly rocks, or how likely it topples."""
+    """Place of a text: earthquakes are few, it does not move, it hardly rocks, or how likely it topples.
+
+    ``few``, ``at_rest``: whether so; ``rocking``: fraction of the motions that rock it [-].
+    """
     if few:
         return 0
     if at_rest:
@@ -67,14 +70,14 @@ def how_likely(few: bool, at_rest: bool, rocking: float) -> int:
 
 
 def chance(value: float, lower: float, upper: float) -> int:
-    """Say a probability, or its limit where all motions agree."""
+    """Place of a text: a probability, or its upper or its lower limit where all motions agree [-]."""
     if value == 0.0 and upper > 0.0:
         return 1
     return 2 if value == 1.0 and lower < 1.0 else 0
 
 
 def how_far(half: float, upper: float) -> int:
-    """Say the level at which half topple with its limits, with the lower alone, or that none tried is enough.
+    """Place of a text: the level at which half topple with both limits, with the lower alone, or none tried.
 
     ``half`` and its ``upper`` limit are infinite where no level that was tried reaches them.
     """
@@ -84,14 +87,18 @@ def how_far(half: float, upper: float) -> int:
 
 
 def in_years(value: float, lower: float, upper: float) -> int:
-    """Say a probability in some years, or its upper limit alone."""
+    """Place of a text: a probability in some years [-], or its upper limit alone."""
     return 1 if value == 0.0 or is_open(lower, upper) else 0
 
 
 def advice(action: int, by_hazard: bool, at_rest: bool, worth: float) -> int:
-    """Say to measure first; with a hazard to secure or to leave it; else what follows from costs.
+    """Place of a text: measure first; with a hazard secure or leave it; without, what follows from costs.
 
-    ``worth`` is the part of what a fall costs that securing may cost [-]; next to nothing, or all, is not said.
+    Parameters
+    ----------
+    action : ``LEAVE``, ``SECURE`` or ``MEASURE``
+    by_hazard, at_rest : whether a hazard is known, and whether the object does not move
+    worth : part of what a fall costs that securing may cost [-]; next to nothing, or all, is not said
     """
     if action == MEASURE:
         return 0
@@ -108,12 +115,12 @@ def advice(action: int, by_hazard: bool, at_rest: bool, worth: float) -> int:
 
 
 def counted(total: int, every: int) -> int:
-    """Say how many motions do what, of all or of those that can be scaled so far."""
+    """Place of a text: how many motions do so, of all (0) or of those that can be scaled so far (1)."""
     return 1 if total < every else 0
 
 
 def between(value: float, lower: float, upper: float) -> int:
-    """Say that a fraction is open, or its upper, its lower or both limits."""
+    """Place of a text: a fraction [-] is open, or its upper, its lower or both limits."""
     if is_open(lower, upper):
         return 0
     if value == 0.0:
@@ -122,12 +129,12 @@ def between(value: float, lower: float, upper: float) -> int:
 
 
 def starts(level: float) -> int:
-    """Say where rocking starts, or that it does not at any level tried."""
+    """Place of a text: where rocking starts, a level in the unit of the measure, or that none tried starts it."""
     return 0 if level < math.inf else 1
 
 
 def over_years(value: float, lower: float, upper: float) -> int:
-    """Say the upper limit of a probability, that it is open, or both limits."""
+    """Place of a text: the upper limit of a probability [-], that it is open, or both limits."""
     if value == 0.0:
         return 0
     return 1 if is_open(lower, upper) else 2
@@ -139,14 +146,21 @@ def needs_change(value: float, at_rest: bool, by_hazard: bool) -> bool:
 
 
 def reduces(factor: float, grows: bool) -> int:
-    """Say that none is left, how much a change takes off, or how much more the object bears."""
+    """Place of a text: none is left (``factor`` 0), how much a change takes off, or how much more is borne."""
     if factor == 0.0:
         return 0
     return 2 if grows else 1
 
 
 def change_alone(factor: float, grows: bool, shown: bool) -> int:
-    """Say what one change does to a risk, or to what an object bears, whether or not it is shown to help."""
+    """Place of a text on what one change does to a risk, or to what an object bears.
+
+    Parameters
+    ----------
+    factor : risk, or what it bears, with the change over that without [-]; NaN if not known
+    grows : whether growing helps, as of what it bears
+    shown : whether the motions show that it helps
+    """
     if math.isnan(factor):
         return 0
     if grows and factor < 1.0:
@@ -161,7 +175,7 @@ def change_alone(factor: float, grows: bool, shown: bool) -> int:
 
 
 def tell_reduction(factor: float, lower: float, upper: float, found: Floats) -> None:
-    """What a factor takes off a risk, or adds to what an object bears, and its limits, rising [-]."""
+    """Fill what a factor takes off a risk, or adds to what is borne, and its limits, rising [-], shape (3,)."""
     sign = -1.0 if factor > 1.0 else 1.0
     first, second = sign * (1.0 - lower), sign * (1.0 - upper)
     found[0] = sign * (1.0 - factor)
@@ -179,10 +193,13 @@ def lists_measurement(chance: float) -> bool:
 
 
 def is_worse(lower: float, helps: bool) -> bool:
-    """Whether a way to stand is shown to be worse than its own: the limit of the factor, and what is estimated."""
+    """Whether a way to stand is shown to be worse than its own.
+
+    ``lower``: lower limit of its risk over that of its own [-]; ``helps``: whether it is estimated to help.
+    """
     return lower > 1.0 and not helps
 
 
 def safest(is_shown: bool) -> int:
-    """Say which way to stand is safest, or that the motions show none to be."""
+    """Place of a text: which way to stand is safest, or that the motions show none to be."""
     return 0 if is_shown else 1

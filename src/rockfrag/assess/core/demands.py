@@ -14,12 +14,12 @@ PART = 0.95
 
 @entry_kernel
 def ask(demands, ordered):
-    """Least demand that is enough for :data:`PART` of the motions; 0 without motions.
+    """Return the least demand that is enough for :data:`PART` of the motions; 0 without motions.
 
     Parameters
     ----------
-    demands : of each motion, shape (motions,)
-    ordered : of that shape, in which they are sorted
+    demands : of each motion [N or m], shape (motions,)
+    ordered : memory of that shape, in which they are sorted
     """
     if demands.size == 0:
         return 0.0
@@ -31,7 +31,7 @@ def ask(demands, ordered):
 
 @entry_kernel
 def count_held(demands, bears):
-    """How many motions ask no more than a holder bears."""
+    """Number of motions whose demands, shape (motions,), are no more than a holder ``bears`` [N or m]."""
     count = 0.0
     for i in range(demands.size):
         if demands[i] <= bears * (1 + 1e-9):

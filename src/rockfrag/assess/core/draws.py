@@ -67,7 +67,7 @@ def make_draws(sources: int, earthquakes: int, members: int = MEMBERS) -> Draws:
 
 
 def _concentration(earthquakes: int) -> float:
-    """Parameter of Dirichlet's distribution with which the 90 % interval of a mean is Student's.
+    """Parameter of Dirichlet's distribution with which the 90 % interval of a mean is Student's [-].
 
     With 1 the variance of a mean is s²/(n + 1), s² with n in its denominator (Rubin 1981): too little for few.
     """
@@ -78,7 +78,10 @@ def _concentration(earthquakes: int) -> float:
 
 
 def _points(dimensions: int, count: int, first: int) -> Floats:
-    """Points of Sobol's sequence inside the unit cube, shifted by the golden ratio's multiples."""
+    """Points of Sobol's sequence in the unit cube, shifted by the golden ratio's multiples, (count, dimensions).
+
+    ``first``: place of the first point in the sequence.
+    """
     points = sobol_points(dimensions, count, first)
     shift = (np.arange(1, dimensions + 1) * (np.sqrt(5.0) - 1) / 2) % 1.0
     return np.asarray((points + shift) % 1.0).clip(1e-9, 1 - 1e-9)

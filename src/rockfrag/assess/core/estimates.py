@@ -42,7 +42,10 @@ VALUE, LOWER, UPPER, MOTIONS = range(4)
 
 @entry_kernel
 def fill_place(levels, level, weights):
-    """Weights of the levels that interpolate at one by the logarithm; the ends are continued level."""
+    """Fill weights of rising levels that interpolate at one by the logarithm, shape (levels,).
+
+    Below the first and above the last level the value there is kept.
+    """
     at = 0
     while at < levels.size - 2 and levels[at + 1] <= level:
         at += 1
@@ -56,7 +59,10 @@ def fill_place(levels, level, weights):
 
 @entry_kernel
 def fill_sums(table, weights, values):
-    """Sum of the weighted numbers of each row, shape (rows,); returns the mean of the sums."""
+    """Fill the sum of the weighted numbers of each row of a table, shape (rows, levels); return their mean.
+
+    ``weights``: of the levels; ``values``: filled, shape (rows,).
+    """
     for d in range(values.size):
         values[d] = 0.0
         for k in range(weights.size):
@@ -67,7 +73,11 @@ def fill_sums(table, weights, values):
 
 @entry_kernel
 def fill_crossings(table, levels, part, values):
-    """Level at which each row reaches a part, linear in the logarithm; infinite where it does not."""
+    """Fill the level at which each row reaches a part [-], linear in the logarithm; infinite where it does not.
+
+    ``table``: fractions at rising ``levels``, shape (rows, levels); ``values``: filled, in their unit, shape
+    (rows,).
+    """
     for d in range(values.size):
         values[d] = math.inf
         for k in range(levels.size):
@@ -84,7 +94,11 @@ def fill_crossings(table, levels, part, values):
 
 @entry_kernel
 def fill_errors(values, normals, spreads):
-    """Multiply rates by errors of ln rate, by source; the rate is a mean, and stays it."""
+    """Multiply rates by errors of ln rate, by source; the rate is a mean, and stays it.
+
+    ``values``: rates, changed in place, shape (draws,); ``normals``: of the sources, shape (draws, sources);
+    ``spreads``: standard deviations of ln rate, shape (sources,).
+    """
     for d in range(values.size):
         away = 0.0
         for j in range(spreads.size):
@@ -94,7 +108,10 @@ def fill_errors(values, normals, spreads):
 
 @kernel
 def shown_of(kind, value, years):
-    """The number that is shown: of a rate the probability in some years, in a Poisson process."""
+    """The number that is shown: of a rate [1/year] the probability in some ``years``, in a Poisson process.
+
+    ``kind``: ``FRACTION``, ``RATE`` or ``LEVEL``.
+    """
     return -expm1(-years * value) if kind == RATE else value
 
 
@@ -106,7 +123,7 @@ def rate_of(probability, years):
 
 @entry_kernel
 def sum_of_squares(deviations):
-    """Sum of squares, of what widens an interval together."""
+    """Sum of the squares of standard deviations, shape (n,), that widen an interval together."""
     total = 0.0
     for i in range(deviations.size):
         total += deviations[i] * deviations[i]
@@ -115,7 +132,7 @@ def sum_of_squares(deviations):
 
 @entry_kernel
 def fill_shown(kind, years, values, shown):
-    """The numbers that are shown of values."""
+    """Fill the numbers that are shown of values (:func:`shown_of`), shape (draws,) each."""
     for d in range(values.size):
         shown[d] = shown_of(kind, values[d], years)
 
@@ -168,9 +185,10 @@ def fill_estimate(
 
 @kernel
 def _scale(kind, last_level, values, scaled):
-    """Values on the scale on which sources have their parts: logarithms of rates and of levels.
+    """Fill values on the scale on which sources have their parts: logarithms of rates and of levels.
 
-    Of rates no less than a thousandth of the mean: what hardly adds to it counts alike.
+    Of rates no less than a thousandth of the mean: what hardly adds to it counts alike. Levels beyond
+    ``last_level`` count as that. ``values``, ``scaled``: shape (draws,).
     """
     least = max(1e-3 * mean(values), 1e-300) if kind == RATE else 0.0
     for d in range(values.size):
@@ -183,7 +201,7 @@ def _scale(kind, last_level, values, scaled):
 
 @kernel
 def _variance_of_sets(values, sets):
-    """Variance of the means under each set of weights."""
+    """Variance of the means under each of so many ``sets`` of weights, whose draws follow each other."""
     members, total, squares = values.size // sets, 0.0, 0.0
     middle = mean(values)
     for b in range(sets):
@@ -196,7 +214,7 @@ def _variance_of_sets(values, sets):
 
 @kernel
 def _variance_of_bins(values, bins):
-    """Variance of the means in bins of equally many draws."""
+    """Variance of the means in bins of equally many draws; ``bins``: of each draw, shape (draws,)."""
     middle, squares = mean(values), 0.0
     for b in range(BINS):
         away = _mean_of_bin(values, bins, b) - middle
@@ -288,7 +306,11 @@ def _fill_turned(values, bins, left, middle, accepted, means, found):
 
 @kernel
 def _mean_once_said(means, left, said):
-    """Mean of the values after one of ``BINS`` equally likely results of a measurement, of those of the bins."""
+    """Mean of the values after one of ``BINS`` equally likely results of a measurement.
+
+    The bins count by how likely each is then: normal about the result, with ``left`` of the standard deviation
+    left. ``means``: of the values in each bin, shape (``BINS``,); ``said``: number of the result.
+    """
     if left <= 0.0:
         return means[said]
     measured = math.sqrt(1.0 - left * left) * CENTRES[said]
@@ -334,7 +356,7 @@ def fill_comparison(kind, before, after, sets, earthquakes, work, found):
 
 @kernel
 def _compare(kind, before, after, sets, work, found):
-    """Both numbers, their ratio and its limits, NaN where there are none."""
+    """Fill both numbers, their ratio and its limits, NaN where there are none (:func:`fill_comparison`)."""
     for place in range(7):
         found[place] = math.nan
     scratch = work[0]
@@ -384,9 +406,9 @@ def _centre(kind, values, work):
 
 @entry_kernel
 def fill_order(first, second, falling, order):
-    """Places by the first numbers, of equal ones by the second, of both equal as they come; NaN last, shape (n,).
+    """Fill places by the first numbers, of equal ones by the second, of both equal as they come; NaN last.
 
-    ``falling`` turns all of it round.
+    ``first``, ``second``, ``order``: shape (n,); ``falling`` turns all of it round.
     """
     for i in range(order.size):
         place = i
@@ -402,6 +424,7 @@ def fill_order(first, second, falling, order):
 
 @kernel
 def _comes_before(first, second, i, j):
+    """Whether place i comes before place j in the order of :func:`fill_order`."""
     if math.isnan(first[i]) != math.isnan(first[j]):
         return math.isnan(first[j])
     if first[i] != first[j] and not math.isnan(first[i]):
@@ -411,7 +434,10 @@ def _comes_before(first, second, i, j):
 
 @entry_kernel
 def fill_parts(deviations, parts):
-    """Part of each source in the variance of an interval [-], shape (sources,); zeros where it has no bound."""
+    """Fill the part of each source in the variance of an interval [-], shape (sources,).
+
+    ``deviations``: standard deviation by each; zeros where the variance has no bound.
+    """
     total = 0.0
     for j in range(deviations.size):
         total += deviations[j] * deviations[j]

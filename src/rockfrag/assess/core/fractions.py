@@ -98,7 +98,10 @@ def fill_counts(
     levels, overturned, allowed, uplifts, earthquakes, work, log_levels, toppled,
     shaken, lifted, motions, log_uplifts, next_one,
 ):  # fmt: skip
-    """Fill the arrays of :class:`Counts`, which are zeros; ``work`` has the shape (3, motions)."""
+    """Fill the arrays of :class:`Counts`, which are zeros, for :func:`count_motions`.
+
+    ``work`` is memory, shape (3, motions): ln levels of uplift in order, of toppling, and class of each motion.
+    """
     for k in range(levels.size):
         log_levels[k] = log(levels[k])
     finite = _sorted_logs(uplifts, work[0])
@@ -148,7 +151,11 @@ def _sorted_logs(levels, logs):
 
 @kernel
 def _choose_classes(ordered, count, classes):
-    """Take all levels of uplift that differ, or of groups of equally many motions the least."""
+    """Fill levels of uplift to be told apart: all that differ, or of so many groups of motions the least of each.
+
+    ``ordered``: ln level of uplift of the first ``count`` motions, rising; ``classes``: filled, infinite where
+    there are fewer, shape (``CLASSES``,).
+    """
     known = 0
     for i in range(count):
         if i == 0 or ordered[i] > ordered[i - 1]:
@@ -168,7 +175,7 @@ def _choose_classes(ordered, count, classes):
 
 @kernel
 def _class_of(uplift, classes):
-    """How many levels of uplift do not exceed one; -1 where it is infinite."""
+    """Number of levels of uplift, whose logarithms are ``classes``, that do not exceed one; -1 where infinite."""
     if not uplift < math.inf:
         return -1
     own, place = log(uplift), 0
@@ -179,7 +186,10 @@ def _class_of(uplift, classes):
 
 @kernel
 def _first_level(overturned, allowed):
-    """First level at which a motion topples the object, else the last one at which it counts, or -1."""
+    """Number of the first level at which a motion topples the object, else of the last at which it counts, or -1.
+
+    ``overturned``, ``allowed``: of one motion, shape (levels,).
+    """
     last = -1
     for k in range(allowed.size):
         if allowed[k]:
@@ -191,7 +201,7 @@ def _first_level(overturned, allowed):
 
 @kernel
 def _any_allowed(allowed, level):
-    """Whether any motion may be scaled to a level."""
+    """Whether any motion may be scaled to the level of a number; ``allowed``: shape (motions, levels)."""
     for m in range(allowed.shape[0]):  # noqa: SIM110 (a kernel has no generators)
         if allowed[m, level]:
             return True
@@ -200,13 +210,17 @@ def _any_allowed(allowed, level):
 
 @kernel
 def _add_up(row):
+    """Replace each number of a row by the sum of all up to it."""
     for i in range(1, row.size):
         row[i] += row[i - 1]
 
 
 @kernel
 def _middle_and_spread(logs, count, otherwise, least, found):
-    """Mean and standard deviation of logarithms, at least ``least``; ``otherwise`` where there are none."""
+    """Fill mean and standard deviation, at least ``least``, of the first ``count`` logarithms, shape (2,).
+
+    Without any the mean is ``otherwise``, and the deviation ``LEAST_SPREAD`` or more.
+    """
     if count == 0:
         found[0], found[1] = otherwise, max(least, LEAST_SPREAD)
         return
@@ -251,10 +265,11 @@ def fill_fractions(
     log_levels, toppled, shaken, lifted, motions, log_uplifts, next_one, weights,
     normals, shifts, toppling, rocking,
 ):  # fmt: skip
-    """Fill both tables of :func:`draw_fractions`.
+    """Fill both tables of :func:`draw_fractions`, by the fields of a :class:`Counts` and the draws.
 
     In a draw the object rocks and topples at a level as it does, without what moves it, at one lower by ``lifts``
-    and by ``topples`` in ln of the measure. Between two levels fractions are straight lines.
+    and by ``topples`` in ln of the measure. Between two levels fractions are straight lines. The next earthquake
+    has normal distributions of its own, and its weight.
     """
     x, size = log_levels, log_levels.size
     draws, blocks = toppling.shape[0], weights.shape[0]
@@ -272,6 +287,7 @@ def fill_fractions(
         # as levels rise: number of levels of uplift that are reached, and level below that of toppling
         place, at = 0, 0
         for k in range(size):
+            # ln levels at which it would rock and topple as much if nothing moved it
             y, v = x[k] - lifts, x[k] - topples
             while place < log_uplifts.size and log_uplifts[place] <= y + ROUNDING:
                 place += 1
@@ -296,7 +312,7 @@ def fill_fractions(
 
 @kernel
 def _part(value, middle, spread):
-    """Normal distribution function; a step where there is no spread."""
+    """Normal distribution function of a value with a middle and a spread; a step where there is no spread."""
     if spread <= 0.0:
         return 1.0 if value - middle >= -ROUNDING else 0.0
     return normal_cdf((value - middle) / spread)
@@ -306,7 +322,8 @@ def _part(value, middle, spread):
 def _weighted(weights, toppled, shaken, level, place):
     """Fraction of the motions at a level, with the weights of their earthquakes, that topple the object.
 
-    Only those count that lift it at one of the first ``place`` levels of uplift.
+    Only those count that lift it at one of the first ``place`` levels of uplift. ``weights``: of the earthquakes;
+    ``toppled`` and ``shaken`` as of :class:`Counts`.
     """
     fell, total = 0.0, 0.0
     for e in range(shaken.shape[0]):
@@ -320,9 +337,16 @@ def _weighted(weights, toppled, shaken, level, place):
 
 @entry_kernel
 def fill_uplifts(levels, rocked, overturned, allowed, lifting, uplifts):
-    """Level at which each motion lifts the object: by statics, or the first at which it moves; else infinite.
+    """Fill the level at which each motion lifts the object: by statics, or the first at which it moves.
 
-    What rocks was lifted, whatever rounding says. ``lifting`` and ``uplifts`` have the shape (motions,).
+    What rocks was lifted, whatever rounding says; infinite where nothing lifts it.
+
+    Parameters
+    ----------
+    levels : rising, shape (levels,)
+    rocked, overturned, allowed : outcomes, and whether they count, shape (motions, levels)
+    lifting : level by statics, shape (motions,)
+    uplifts : filled, shape (motions,)
     """
     for m in range(uplifts.size):
         uplifts[m] = lifting[m]
@@ -334,7 +358,10 @@ def fill_uplifts(levels, rocked, overturned, allowed, lifting, uplifts):
 
 @entry_kernel
 def fill_counts_at(levels, level, allowed, rocked, overturned, found):
-    """How many motions count at one of the levels, rock and topple the object there; zeros of any other level."""
+    """Fill how many motions count at a level, rock and topple the object there, shape (3,).
+
+    Zeros where it is none of the ``levels``; the others have the shape (motions, levels).
+    """
     for place in range(3):
         found[place] = 0.0
     for k in range(levels.size):
@@ -368,10 +395,11 @@ def fill_deciding(levels, allowed, overturned, level, found):
 
 @entry_kernel
 def fill_counted(happened, allowed, weights, fractions):
-    """Fraction of the weighted motions to which something happened at each level, shape (levels,).
+    """Fill the fraction of the weighted motions to which something happened at each level [-], shape (levels,).
 
-    A motion that cannot be scaled so far is left out of a level; where none can, the fraction of the nearest
-    level below is kept, and nothing happens below the lowest level.
+    A motion that cannot be scaled so far is left out of a level; where none can, the fraction of the nearest level
+    below is kept, and nothing happens below the lowest level. ``happened``, ``allowed``: shape (motions, levels);
+    ``weights``: shape (motions,).
     """
     last = 0.0
     for k in range(fractions.size):
@@ -392,10 +420,16 @@ LEAST_SPAN = 0.05
 
 @entry_kernel
 def fill_shift(levels, lower, upper, lower_uplifts, upper_uplifts, found):
-    """What a property moves at its standard deviation, by fractions and uplifts with it on both sides.
+    """Fill what a property moves at its standard deviation: ln level of uplift, and of toppling, shape (2,).
 
     Levels of uplift move by the mean over the motions; those of toppling by the area between both fractions over
     ln level, which of a curve that is moved is the move times its height.
+
+    Parameters
+    ----------
+    levels : rising, shape (levels,)
+    lower, upper : fractions that topple with the property low and high, shape (levels,)
+    lower_uplifts, upper_uplifts : levels of uplift then, shape (motions,)
     """
     found[0] = (_mean_log(upper_uplifts) - _mean_log(lower_uplifts)) / 2
     found[1] = found[0]
@@ -412,7 +446,7 @@ def fill_shift(levels, lower, upper, lower_uplifts, upper_uplifts, found):
 
 @kernel
 def _mean_log(levels):
-    """Mean of the logarithms of the finite levels, 0 if there are none."""
+    """Mean of the logarithms of the finite levels, shape (motions,); 0 if there are none."""
     total, count = 0.0, 0
     for m in range(levels.size):
         if levels[m] < math.inf:

@@ -16,12 +16,16 @@ from rockfrag.base.exponentials import exp, expm1, log
 
 @kernel
 def _slope(levels, rates, i):
+    """Slope of ln rate over ln level from point i to the next; ``levels``, ``rates``: of a curve, shape (n,)."""
     return log(rates[i + 1] / rates[i]) / log(levels[i + 1] / levels[i])
 
 
 @kernel
 def rate_at(levels, rates, level):
-    """Annual rate with which a level is exceeded [1/year]; the ends are continued as they slope."""
+    """Annual rate with which a level is exceeded [1/year]; the ends are continued as they slope.
+
+    ``levels``, ``rates``: points of the curve, levels rising, shape (n,).
+    """
     i = 0
     while i < levels.size - 2 and levels[i + 1] < level:
         i += 1
@@ -30,7 +34,10 @@ def rate_at(levels, rates, level):
 
 @entry_kernel
 def fill_level(levels, rates, rate, found):
-    """Level that is exceeded with an annual rate [1/year]."""
+    """Fill the level that is exceeded with an annual rate [1/year], shape (1,).
+
+    ``levels``, ``rates``: points of the curve, levels rising, shape (n,).
+    """
     i = 0
     while i < levels.size - 2 and rates[i + 1] > rate:
         i += 1
@@ -39,7 +46,10 @@ def fill_level(levels, rates, rate, found):
 
 @entry_kernel
 def fill_power_law(level, years, exponent, levels, rates):
-    """A curve through one level with its return period [year]: a tenth, the level and ten times it."""
+    """Fill a curve through one level with its return period [years]: a tenth, the level and ten times it.
+
+    ``exponent``: k of rates in proportion to level^-k; ``levels``, ``rates`` [1/year]: filled, shape (3,).
+    """
     for i in range(3):
         factor = 10.0 if i == 2 else 1.0 if i == 1 else 0.1
         levels[i] = level * factor
@@ -51,7 +61,11 @@ def fill_rate_weights(levels, shift, curve_levels, curve_rates, weights):
     """Weights with which fractions at rising levels add up to the rate of toppling [1/year], shape (levels,).
 
     Nothing topples below the first level, and above the last one the last fraction stays. ``shift`` is the
-    logarithm of a factor on all levels: the object bears so much more.
+    logarithm of a factor on all levels: the object bears so much more. ``curve_levels``, ``curve_rates`` are the
+    points of the hazard curve, ``weights`` are filled.
+
+    Over a piece in which the fraction is a straight line in ln level and the rate a power law, the integral of
+    each is the rate that falls on either side of its mean (:func:`_mean_rate`).
     """
     last, factor = levels.size - 1, exp(shift)
     for k in range(last + 1):
@@ -81,7 +95,8 @@ def fill_rate_weights(levels, shift, curve_levels, curve_rates, weights):
 
 @kernel
 def _mean_rate(before, after):
-    """Mean of a rate that falls as a power law over a piece in ln level, (ν0 - ν1) / ln(ν0/ν1)."""
+    """Mean over ln level of a rate that falls as a power law, from ν0 ``before`` to ν1 ``after``."""
+    # (ν0 - ν1) / ln(ν0/ν1)
     fall = log(before / after)
     if fall <= 1e-12:
         return before
@@ -90,7 +105,11 @@ def _mean_rate(before, after):
 
 @entry_kernel
 def spread_of_quantiles(scores, rates):
-    """Standard deviation of ln rate that quantiles stand for, by their normal scores; NaN of less than two."""
+    """Standard deviation of ln rate that quantiles stand for; NaN of less than two with a rate.
+
+    ``scores``: normal scores of the quantiles; ``rates``: theirs [1/year], 0 where not known; shape (quantiles,)
+    each.
+    """
     low, high = -1, -1
     for i in range(rates.size):
         if rates[i] > 0.0:

@@ -22,7 +22,7 @@ def sort(values):
 
 @kernel
 def _sift(values, root, end):
-    """Let a number sink to its place in a heap."""
+    """Let the number at ``root`` sink to its place in a heap of the first ``end`` values."""
     here = values[root]
     while True:
         child = 2 * root + 1
@@ -39,7 +39,7 @@ def _sift(values, root, end):
 
 @kernel
 def quantile(ordered, count, part):
-    """Quantile of the first numbers of a rising array, linear between them."""
+    """Quantile at a ``part`` [-] of the first ``count`` numbers of a rising array, linear between them."""
     at = part * (count - 1)
     low = math.floor(at)
     if low + 1 >= count:

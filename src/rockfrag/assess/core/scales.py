@@ -19,7 +19,7 @@ AT_REST = 1e-9  # Factor of motions that are not counted: at rest costs nothing
 
 @kernel
 def _believable(peak):
-    """Largest factor on a motion of a peak [m/s²] at which it is still one that a floor may feel."""
+    """Largest factor on a motion of a peak [m/s²] with which it is still one that a floor may feel."""
     return (1.0 - 1e-9) * LARGEST_PEAK / peak if peak > 0.0 else math.inf
 
 
@@ -45,9 +45,13 @@ def fill_scales(levels, values, peaks, scales, allowed):
 
 @entry_kernel
 def fill_factors(scales, allowed, peaks, factors):
-    """Factors on what shakes the object, at most those that are believed; at rest what does not count.
+    """Fill factors on what shakes the object, at most those that are believed; ``AT_REST`` where none counts.
 
-    ``peaks`` are those of what shakes [m/s²], shape (motions,), the others have the shape (motions, levels).
+    Parameters
+    ----------
+    scales, allowed : factors to levels, and whether they count, shape (motions, levels)
+    peaks : of what shakes the object [m/s²], shape (motions,)
+    factors : filled, shape (motions, levels)
     """
     for m in range(scales.shape[0]):
         most = _believable(peaks[m])
@@ -57,7 +61,7 @@ def fill_factors(scales, allowed, peaks, factors):
 
 @entry_kernel
 def peak_of(samples):
-    """Largest magnitude of samples."""
+    """Largest magnitude of samples, in their unit."""
     most = 0.0
     for i in range(samples.size):
         most = max(most, abs(samples[i]))
@@ -66,7 +70,10 @@ def peak_of(samples):
 
 @entry_kernel
 def fill_direction(first, second, cosine, sine, found):
-    """What two components come to in a direction, by samples."""
+    """Fill what two horizontal components come to in a direction, by samples, shape (n,).
+
+    ``cosine``, ``sine``: of the angle from the first component.
+    """
     for i in range(found.size):
         found[i] = in_direction(first[i], second[i], cosine, sine)
 
@@ -76,16 +83,22 @@ def fill_direction(first, second, cosine, sine, found):
 
 @entry_kernel
 def lifting_in_plane(uplift, peak):
-    """Factor on a motion of a peak [m/s²] from which it opens a contact, whose least acceleration is known [g]."""
+    """Factor on a motion of a peak [m/s²] from which it opens a contact whose least acceleration is known [g]."""
     return uplift * GRAVITY / peak
 
 
 @entry_kernel
 def lifting_over_edges(corners, height, x, y):
-    """Factor from which both components lift a body in space over an edge.
+    """Factor on both components from which they lift a body in space over an edge.
 
-    Over an edge at the distance d from below the centre of gravity at height h, an acceleration of the base away
-    from it of g d/h. ``corners`` run anticlockwise from there [m], shape (corners, 2).
+    Over an edge at the distance d from below the centre of gravity at height h, that takes an acceleration of the
+    base away from it of g d/h.
+
+    Parameters
+    ----------
+    corners : of the base, anticlockwise from below the centre of gravity [m], shape (corners, 2)
+    height : of the centre of gravity [m]
+    x, y : both components [m/s²], shape (n,)
     """
     most, count = 0.0, corners.shape[0]
     for i in range(count):
@@ -103,10 +116,17 @@ def lifting_over_edges(corners, height, x, y):
 
 @entry_kernel
 def lifting_over_rim(radius, centre_x, centre_y, height, x, y):
-    """Factor from which both components lift a body in space over a rim.
+    """Factor on both components from which they lift a body in space over a rim.
 
-    In any direction an acceleration of g r/h; a centre of gravity that is not above the middle of a rim, which is
-    at ``centre_x, centre_y`` from below it, lifts it earlier towards the near side, by its distance.
+    In any direction that takes an acceleration of g r/h; a centre of gravity that is not above the middle of a rim
+    lifts it earlier towards the near side, by its distance.
+
+    Parameters
+    ----------
+    radius : of the rim [m]
+    centre_x, centre_y : middle of the rim from below the centre of gravity [m]
+    height : of the centre of gravity [m]
+    x, y : both components [m/s²], shape (n,)
     """
     aside = math.sqrt(centre_x * centre_x + centre_y * centre_y)
     least = GRAVITY * (radius - aside) / height

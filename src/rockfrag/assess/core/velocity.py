@@ -31,8 +31,11 @@ _LOG_ROOT_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 WEIGHT, ERROR, FIRST = range(3)
 """Places in what :func:`fill_weight` leaves: weight, standard error, and the first of three coefficients."""
 
-# Columns of the memory of a test, and places in the state
+# Columns of the memory of a test: ln IM, ln PGV/IM, whether it fell, number of its earthquake, linear predictor,
+# density over the chance of falling and over that of standing, and weight
 _X1, _X2, _FELL, _QUAKE, _ETA, _UP, _DOWN, _HERE = range(8)
+# Places in the state: coefficients, step and trial, three each, slope of the goal, and the six different entries
+# of Fisher's matrix and of its inverse
 _C, _STEP, _TRIAL, _SCORE, _FISHER, _INVERSE = 0, 3, 6, 9, 12, 18
 
 
@@ -84,7 +87,7 @@ def fill_weight(
 
 @kernel
 def _last_quake(tests):
-    """Largest number of an earthquake."""
+    """Largest number of an earthquake among the tests."""
     last = 0.0
     for r in range(tests.shape[0]):
         last = max(last, tests[r, _QUAKE])
@@ -93,7 +96,10 @@ def _last_quake(tests):
 
 @kernel
 def _gather(levels, allowed, overturned, logs, earthquakes, tests):
-    """Put every so many tests into memory; returns how many they are, and how many fell."""
+    """Put every so many tests into memory, at most ``MOST_LEVELS`` a motion; parameters as of :func:`fill_weight`.
+
+    Returned are how many they are, and how many fell.
+    """
     step = (levels.size + MOST_LEVELS - 1) // MOST_LEVELS
     count, fell = 0, 0
     for m in range(logs.size):
@@ -111,7 +117,11 @@ def _gather(levels, allowed, overturned, logs, earthquakes, tests):
 
 @kernel
 def _fit(tests, without, state):
-    """Climb from the coefficients of the state to the maximum by Fisher scoring; whether it was reached."""
+    """Climb from the coefficients of the state to the maximum by Fisher scoring; return whether it was reached.
+
+    ``tests``: memory of the tests, shape (tests, ``MEMORY``); ``without``: number of the earthquake that is left
+    out, -1 for none. A step that makes it worse is halved.
+    """
     best = -math.inf
     for i in range(3):
         state[_STEP + i] = 0.0
@@ -142,7 +152,10 @@ def _fit(tests, without, state):
 
 @kernel
 def _likelihood(tests, without, state):
-    """Penalised logarithm of the likelihood of the trial; leaves Fisher's matrix and its inverse."""
+    """Penalised logarithm of the likelihood of the trial; leaves Fisher's matrix and its inverse in the state.
+
+    Parameters as of :func:`_fit`.
+    """
     for i in range(6):
         state[_FISHER + i] = 0.0
     goal = 0.0
@@ -199,17 +212,16 @@ def _invert(state):
 
 @kernel
 def _take_step(tests, without, state):
-    """Leave the step from the coefficients to where Fisher's matrix expects the maximum."""
+    """Leave in the state the step from the coefficients to where Fisher's matrix expects the maximum.
+
+    The slope of each test has half its leverage times the slope of ln weight added (Firth 1993). Parameters as of
+    :func:`_fit`.
+    """
     for i in range(3):
         state[_SCORE + i] = 0.0
-    p, q, r, s, t, u = (
-        _INVERSE,
-        _INVERSE + 1,
-        _INVERSE + 2,
-        _INVERSE + 3,
-        _INVERSE + 4,
-        _INVERSE + 5,
-    )
+    # places of the inverse in 11, 12, 13, 22, 23 and 33
+    p, q, r = _INVERSE, _INVERSE + 1, _INVERSE + 2
+    s, t, u = _INVERSE + 3, _INVERSE + 4, _INVERSE + 5
     for row in range(tests.shape[0]):
         test = tests[row]
         if test[_QUAKE] == without:
@@ -235,17 +247,20 @@ def _take_step(tests, without, state):
 
 @entry_kernel
 def fill_wanted(levels, lines, wanted):
-    """Ln (PGV over the measure [s]) expected at levels: the first line in ln level, shape (levels,)."""
+    """Fill ln (PGV over the measure [s]) expected at levels, shape (levels,).
+
+    ``lines``: of the site, intercept and slope in ln level, shape (facts + 1, 2), of which the first is the mean.
+    """
     for k in range(levels.size):
         wanted[k] = lines[0, 0] + lines[0, 1] * log(levels[k])
 
 
 @entry_kernel
 def spread_of_mean(level, rest, lines):
-    """Standard deviation of that mean at a level [-].
+    """Standard deviation of the mean of ln (PGV over the measure) at a level [-].
 
     By how much it differs where one fact of the site is a standard deviation off is a line in ln level too, one
-    for each fact; ``rest`` is what remains.
+    for each fact: rows 1 and up of ``lines``, shape (facts + 1, 2). ``rest`` is what remains [-].
     """
     squares = rest * rest
     for i in range(1, lines.shape[0]):
@@ -318,7 +333,7 @@ def fill_moved(
 
 @kernel
 def _nearest(logs, moved):
-    """Place of the logarithm that is nearest to one among rising ones."""
+    """Place of the number nearest to ``moved`` among rising ones, shape (levels,)."""
     low, high = 0, logs.size - 1
     while high - low > 1:
         middle = (low + high) // 2

@@ -15,7 +15,7 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -91,6 +91,7 @@ class HazardCurve:
 
     @property
     def _slopes(self) -> Floats:
+        """Slope of ln rate over ln level between points, shape (n - 1,)."""
         return np.asarray(np.diff(np.log(self.rates)) / np.diff(np.log(self.levels)))
 
 
@@ -125,10 +126,24 @@ def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
 def make_curve(
     measure: IntensityMeasure, levels: ArrayLike, rates: ArrayLike, where: str
 ) -> HazardCurve:
-    """Make a curve of levels and rates [1/year] of a file, or say in one sentence what is wrong with it.
+    """Make a curve of levels and rates of a file, or say in one sentence what is wrong with it.
 
     Points that are never exceeded, and equal rates at either end, which are those of a probability that was
-    rounded, are left out. ``where`` goes into messages, and is the source.
+    rounded, are left out.
+
+    Parameters
+    ----------
+    measure : of which the levels are
+    levels, rates : in the unit of the measure, rising, and annual [1/year], shape (n,)
+    where : of messages, and the source of the curve
+
+    Returns
+    -------
+    The :class:`HazardCurve`.
+
+    Raises
+    ------
+    InputError : where they are no hazard curve
     """
     x, y = np.asarray(levels, dtype=np.float64), np.asarray(rates, dtype=np.float64)
     if x.size != y.size:
@@ -172,7 +187,18 @@ def make_curve(
 
 
 def rates_of(poes: Sequence[float], years: float, where: str) -> Floats:
-    """Annual rates of probabilities of exceedance in some years, by Poisson's law [1/year]; infinite for 1."""
+    """Annual rates of probabilities of exceedance in some years, by Poisson's law; infinite for 1.
+
+    Parameters
+    ----------
+    poes : probabilities [-], n of them
+    years : investigation time
+    where : of messages
+
+    Returns
+    -------
+    The rates [1/year], shape (n,).
+    """
     if not (math.isfinite(years) and years > 0):
         raise InputError(
             f"{where}: the investigation time must be above 0 years, found {years:g}."
@@ -190,9 +216,20 @@ def rates_of(poes: Sequence[float], years: float, where: str) -> Floats:
 def curve_of_one_level(
     measure: IntensityMeasure, level: float, years: float
 ) -> HazardCurve:
-    """Continue one level with its mean return period [year] as a power law."""
+    """Continue one level with its mean return period as a power law.
+
+    Parameters
+    ----------
+    measure, level : the measure, and the level in its unit
+    years : mean return period [years]
+
+    Returns
+    -------
+    The curve, with quantiles by exponents a standard deviation away.
+    """
 
     def curve(k: float, source: str) -> HazardCurve:
+        """Curve with the exponent k."""
         levels, rates = np.zeros(3), np.zeros(3)
         fill_power_law(float(level), float(years), k, levels, rates)
         return HazardCurve(measure, levels, rates, source, is_read=False)
@@ -268,8 +305,12 @@ def read_level(text: str, measure: IntensityMeasure) -> float:
 
 LARGEST_FILE = 50_000_000  # Bytes of a hazard file; that of one site has some thousand
 
-# A curve and which statistic it is; empty for the only one
-Found = tuple[HazardCurve, str]
+
+class Found(NamedTuple):
+    """A curve that a file holds."""
+
+    curve: HazardCurve
+    statistic: str  # such as ``mean`` or ``quantile-0.16``; empty for the only one
 
 
 def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
@@ -288,10 +329,8 @@ def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
     for path in map(str, paths):
         text = read_text(path, LARGEST_FILE)
         for curve, kind in _reader(text)(text, path):
-            named, statistic = (
-                found.setdefault(curve.measure.imt, {}),
-                _statistic(kind, path),
-            )
+            named = found.setdefault(curve.measure.imt, {})
+            statistic = _statistic(kind, path)
             if statistic in named:
                 raise InputError(
                     f"{path}: {curve.measure.imt} ({statistic}) is given twice, in {named[statistic].source} "
@@ -302,7 +341,10 @@ def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
 
 
 def _reader(text: str) -> Callable[[str, str], Sequence[Found]]:
-    """What reads the kind of file that a text is of; any may be a table, which says what it lacks."""
+    """Return the function that reads the kind of file that a text is of, of its text and its path.
+
+    What is no other kind may be a table, whose reader says what it lacks.
+    """
     start = text.lstrip()
     if start.startswith("<"):
         return _read_nrml
@@ -399,9 +441,8 @@ def read_openquake(text: str, path: str) -> Found:
             f"{path}: a level, probability or time is no number ({error})."
         ) from None
     measure = read_measure(facts["imt"], path)
-    return make_curve(measure, levels, rates_of(poes, years, path), path), facts.get(
-        "kind", ""
-    )
+    curve = make_curve(measure, levels, rates_of(poes, years, path), path)
+    return Found(curve, facts.get("kind", ""))
 
 
 def _read_usgs(text: str, path: str) -> list[Found]:
@@ -423,16 +464,14 @@ def _read_usgs(text: str, path: str) -> list[Found]:
         found = []
         for curve in response if is_old else response["hazardCurves"]:
             total = {part["component"]: part for part in curve["data"]}["Total"]
-            about, values = (
-                (curve["metadata"], total) if is_old else (curve, total["values"])
-            )
-            x, y = (
-                (about["xvalues"], values["yvalues"])
-                if is_old
-                else (values["xs"], values["ys"])
-            )
+            about = curve["metadata"] if is_old else curve
+            if is_old:
+                levels, rates = about["xvalues"], total["yvalues"]
+            else:
+                levels, rates = total["values"]["xs"], total["values"]["ys"]
             measure = read_measure(str(about["imt"]["value"]), path)
-            found.append((make_curve(measure, _numbers(x), _numbers(y), path), ""))
+            made = make_curve(measure, _numbers(levels), _numbers(rates), path)
+            found.append(Found(made, ""))
     except (KeyError, TypeError, IndexError, OverflowError) as error:
         raise InputError(
             f"{path}: is not an answer of the USGS hazard service with hazard curves "
@@ -497,10 +536,15 @@ def _read_nrml(text: str, path: str) -> list[Found]:
 def _of_element(
     curves: ET.Element, above: Mapping[str, str], version: Sequence[str], path: str
 ) -> Found:
-    """Read one element of hazard curves: the curve, and which of the mean, quantiles and branches it is.
+    """Read one element of hazard curves in NRML.
 
-    ``above`` has the attributes of the elements around it; ``version`` the names of a version of the format: of
-    the element itself, of its levels and of its probabilities of exceedance, and what to say without levels.
+    Parameters
+    ----------
+    curves : the element
+    above : attributes of the elements around it
+    version : one of ``_VERSIONS``: names of the element, of its levels and of its probabilities, words without
+        levels
+    path : which messages name
     """
     _, level, poe, missing = version
     levels = next(_named(curves, level), None)
@@ -530,7 +574,7 @@ def _of_element(
             f"{path}: the investigation time is {len(times)} numbers; give one."
         )
     rates = rates_of(fractions, times[0], path)
-    return make_curve(measure, values, rates, path), _statistic_of(curves)
+    return Found(make_curve(measure, values, rates, path), _statistic_of(curves))
 
 
 def _numbers_in(text: str | None, path: str) -> list[float]:
@@ -570,8 +614,9 @@ _LEVEL = re.compile(r"(pga|pgv|sa_(\d+(?:_\d+)?)s)_(g|cm_s|m_s|m_s2|cm_s2)")
 
 
 def _read_levels(text: str, path: str) -> list[Found]:
+    """Read a table of levels and rates, whose rows make one curve."""
     rows, curve = read_levels(path, text)
-    return [(curve(rows, path), "")]
+    return [Found(curve(rows, path), "")]
 
 
 def read_levels(
@@ -605,6 +650,7 @@ def read_levels(
     measure, factor = _measure_of(level, str(path))
 
     def curve(rows: Sequence[Row], where: str) -> HazardCurve:
+        """Curve of some rows of the table."""
         points = sorted((row.number(level) * factor, row.number(often)) for row in rows)
         rates = _annual_rates(often, [value for _, value in points], where)
         return make_curve(measure, [intensity for intensity, _ in points], rates, where)
@@ -621,7 +667,7 @@ def _plain(title: str) -> str:
 
 
 def _measure_of(title: str, path: str) -> tuple[IntensityMeasure, float]:
-    """Return measure and factor to its unit of a title such as ``pga_cm_s2``."""
+    """Return the measure of a title such as ``pga_cm_s2``, and the factor from its unit to that of the measure."""
     found = _LEVEL.fullmatch(title)
     assert found is not None
     name, period, unit = found.groups()
@@ -635,7 +681,7 @@ def _measure_of(title: str, path: str) -> tuple[IntensityMeasure, float]:
 
 
 def _annual_rates(title: str, values: list[float], path: str) -> list[float]:
-    """Annual rates of a column whose title says how often levels are exceeded [1/year]."""
+    """Annual rates [1/year] of the values of a column whose title says how often levels are exceeded."""
     if title == "annual_rate":
         return values
     if title == "return_period_years":

@@ -105,6 +105,7 @@ def on_plate(block: Block) -> Block:
 
 
 def _plate(where: Text, block: Block) -> Finding:
+    """The plate under a block in words, with its width and thickness [cm]."""
     plate = changed_block(block, bodies.make_plate)
     wide, thick = two(100 * plate.width), three(100 * plate.height)
     return finding(where, width=wide, thick=thick)

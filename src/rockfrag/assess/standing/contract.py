@@ -171,7 +171,11 @@ class Standing(ABC):
     def stretched(
         self, width: float = 1.0, height: float = 1.0, mass: float = 1.0
     ) -> Self:
-        """Move all edges: what carries is uncertain at the foot of a pedestal as at that of a statue."""
+        """Return it with lengths and mass multiplied by factors [-], all edges moved alike.
+
+        What carries is as uncertain at the foot of a pedestal as at that of a statue, so that ``width`` is a
+        factor on all of them; ``height`` and ``mass`` are of the object alone.
+        """
         pedestals = tuple(stretched_block(block, width) for block in self.pedestals)
         return replace(
             self,

@@ -94,13 +94,14 @@ class Scanned(Standing):
         """The ways to stand in the plane and in space."""
         assert self.scan is not None
         planar, in_space = self.scan.sides(), self.scan.space
+        # by source: places lower and higher, and the spread, as of Scan.sides; and both bodies
         space: dict[str, tuple[float, float, float]] = {}
         bodies: dict[str, tuple[RigidBody | None, ...]] = {}
         if in_space is not None and self.scanned is not None:
             space = in_space.sides()
             bodies = {
-                name: tuple(map(in_space.body, side[:2]))
-                for name, side in space.items()
+                name: (in_space.body(low), in_space.body(high))
+                for name, (low, high, _) in space.items()
             }
             if self.faces_anywhere:
                 bodies["facing"] = tuple(
@@ -108,7 +109,8 @@ class Scanned(Standing):
                 )
         found = []
         for name in dict.fromkeys((*planar, *bodies)):
-            spread_in_space = space.get(name, (0, 0, 0.0))[2]
+            # a source that acts in space alone has the middle way in the plane, and the reverse
+            _, _, spread_in_space = space.get(name, (0.0, 0.0, 0.0))
             low, high, spread = planar.get(name, (0.5, 0.5, spread_in_space))
             less, more = bodies.get(name, (self.scanned, self.scanned))
             lower = replace(self, block=self.scan.block(low), scanned=less)

@@ -20,7 +20,10 @@ class Reference(types.Type):  # type: ignore[misc]
 
 
 def by_reference(named_tuple: Any) -> Any:
-    """Mark a class of named tuples whose values kernels get by reference."""
+    """Mark a class of named tuples whose values kernels get by reference, and return the class.
+
+    A kernel that is handed one sees the type :class:`Reference`, and loads a field where it asks for it.
+    """
 
     @extending.typeof_impl.register(named_tuple)  # type: ignore[untyped-decorator]
     def of_value(values: Any, context: Any) -> Reference:
@@ -77,6 +80,7 @@ def referred(typing_context, values):  # type: ignore[no-untyped-def]
 
 @extending.unbox(Reference)  # type: ignore[untyped-decorator]
 def _from_python(reference: Reference, value: Any, call: Any) -> Any:
+    """Put a tuple of Python into memory of the call, and give the kernel where it is."""
     given = call.unbox(reference.tuple_type, value)
     place = cgutils.alloca_once_value(call.builder, given.value)
     return extending.NativeValue(place, cleanup=given.cleanup, is_error=given.is_error)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from functools import cache
 from pathlib import Path
-from types import FunctionType, ModuleType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 import numba
@@ -36,9 +36,14 @@ if KNOWN:
 
 @cache
 def _digest() -> str:
-    """Digest of all kernels' sources: those of engines, of the arithmetic and of bodies."""
+    """Key under which machine code is kept: digest of all that kernels are made of.
+
+    That are the sources of engines, of their arithmetic, of bodies and of laws, and the functions of laws that
+    were declared elsewhere.
+    """
     digest = hashlib.sha256()
     package = Path(__file__).parents[2]
+    # modules directly in the folder of engines are no kernels
     sources = [
         *sorted((package / "engines").glob("*/**/*.py")),
         *sorted((package / "laws").glob("*.py")),
@@ -47,9 +52,18 @@ def _digest() -> str:
         digest.update(path.read_bytes())
     for law in laws():
         # one that was declared elsewhere is compiled in too
-        code = b"" if law.rate is None else law.rate.__code__.co_code
-        digest.update(f"{law.name} {law.number}".encode() + code)
+        digest.update(f"{law.name} {law.number}".encode() + _compiled(law.rate))
     return digest.hexdigest()
+
+
+def _compiled(function: Callable[..., Any] | None) -> bytes:
+    """What Python has made of a function: its instructions, with the constants and names that they use."""
+    if function is None:
+        return b""
+    code = function.__code__
+    # a function within it would be told by where it lies in memory
+    constants = [each for each in code.co_consts if not isinstance(each, CodeType)]
+    return repr((code.co_code, constants, code.co_names)).encode()
 
 
 _EVERY: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}

@@ -54,11 +54,11 @@ def place_lowest(p: Any, shape: Shape) -> Foot:
 def place_above(
     p: Any, k: int, shapes: tuple[Shape, Shape], face: Face, below: Foot
 ) -> Foot:
-    """Place a body on the one under it; where it stands.
+    """Place a body on the one under it.
 
     Parameters
     ----------
-    p, k : record, and number of the body from below
+    p, k : record ``BODY``, and number of the body from below
     shapes : of the body under it and of itself, each as it stands by itself
     face, below : what it stands on, and where the body under it stands
 
@@ -69,6 +69,7 @@ def place_above(
     lower, own = shapes
     wide = Shape(face.half, lower.mass, lower.inertia, lower.x, lower.y)
     pile = geometry.pile_of(wide, own, face.height, face.lean, face.offset)
+    # of the body below, from the middle of its base: to that of its face, along the face and across
     aside = geometry.turned(face.right, 0.0, face.lean)
     top = geometry.turned(0.0, face.height, face.lean)
     foot = geometry.turned(
@@ -77,6 +78,7 @@ def place_above(
     middle = geometry.turned(
         top[0] + aside[0] - wide.x, top[1] + aside[1] - wide.y, below.tilt
     )
+    # the face from the centre of gravity of the body below
     p.face[k, 0], p.face[k, 1], p.half[k] = middle[0], middle[1], wide.b
     across = geometry.turned(face.offset, face.height, face.lean)
     base = geometry.turned(across[0] + aside[0], across[1] + aside[1], below.tilt)
@@ -92,7 +94,10 @@ def place_above(
 def _place(
     p: Any, k: int, shape: Shape, stands: tuple[float, float], tilt: float
 ) -> None:
-    """Fill masses, corners and critical angles of a body, and where its centre of gravity stands."""
+    """Fill masses, corners and critical angles of body k, and where its centre of gravity stands.
+
+    ``stands``: x and y [m] from the middle of the lowest base; ``tilt``: of what it stands on, clockwise [rad].
+    """
     p.mass[k], p.inertia[k] = shape.mass, shape.inertia
     p.inverse[3 * k], p.inverse[3 * k + 1] = 1 / shape.mass, 1 / shape.mass
     p.inverse[3 * k + 2] = 1 / shape.inertia
@@ -118,9 +123,11 @@ def fill_start(p: Any, theta: Any, omega: Any, start: Any) -> None:
     """
     for k in range(p.count):
         below, rate = (theta[k - 1], omega[k - 1]) if k > 0 else (0.0, 0.0)
+        # the corner that stays on what is below: the right one where it turns clockwise from that
         end = 1 if ((theta[k] - below) or (omega[k] - rate)) >= 0 else 0
         corner = p.corner[k, end, 0], p.corner[k, end, 1]
         x, y = p.standing[3 * k] + corner[0], p.standing[3 * k + 1] + corner[1]
+        # velocity of the corner
         along, up = 0.0, 0.0
         if k > 0:
             at = 3 * k - 3
@@ -166,7 +173,7 @@ def fill_wall(p: Any, k: int, x: float, side: Side) -> None:
     side : of the body
     """
     p.side[k], p.wall_x[k] = side.way, x
-    # in the order in which the wall's tangent meets them
+    # in the order in which the wall's tangent meets them: upwards on the right, downwards on the left
     first, last = side.low, side.high
     if side.way < 0:
         first, last = side.high, side.low

@@ -2,6 +2,9 @@
 
 The forces of the two ends of a contact at ± b are those of two pads at ± c: N/2 ± M/(2 c), M = (N_1 - N_0) b.
 
+``p`` and ``w`` are records ``BODY`` and ``WORK`` (``records.py``). ``q`` and ``v`` have x, y [m] and the clockwise
+rotation θ [rad] of body k, from place 3 k on, and their rates.
+
 In: a record ``BODY``, with the forces of its ends in the working memory. Out: forces of the pads [N], margins over
 the weight [-], and which bonds break.
 """
@@ -37,7 +40,10 @@ def pad_force(p, w, k):
 
 @kernel
 def bond_margin(p, w, k):
-    """Least margin of a whole bond, with the forces in ``w`` over the weight [-]."""
+    """Least margin of the whole bond of contact k [-]: what its pads and its shear have left, over the weight.
+
+    The forces are those in ``w``; friction under compression adds to the shear that it bears.
+    """
     pressed = w.normal[k, 0] + w.normal[k, 1]
     pulled = (p.bond_tension[k] + pad_force(p, w, k)) / p.weight
     hold = p.bond_shear[k] + p.static[k] * pressed - abs(w.shear[k])
@@ -46,7 +52,11 @@ def bond_margin(p, w, k):
 
 @kernel
 def fill_rest_margins(p, w, k, load):
-    """Margins at rest of bonded contact k under the accelerations of a ``load``: of its pads, and of its shear."""
+    """Fill the margins at rest of bonded contact k: of its left and right pad, and of its shear to either side.
+
+    ``load``: column of ``w.rest``, 0 for gravity alone, 1 and 2 with a unit of the ground's acceleration to the
+    right and upwards; the forces in ``w`` are those under it.
+    """
     left, right = pad_forces(p, w, k)
     hold = p.bond_shear[k] + p.static[k] * (left + right)
     unit = 1.0 / (p.weight * max(p.static[k], 1.0))
@@ -58,10 +68,15 @@ def fill_rest_margins(p, w, k, load):
 
 @kernel
 def note_rest_loads(p, w, now):
-    """Keep what bonds needed so far at rest under the accelerations ``now``, from the margins of rest."""
+    """Keep the largest tensile capacity [N] that bonds needed so far at rest under the accelerations ``now``.
+
+    It follows from the margins of rest, which are linear in both accelerations.
+    """
     for k in range(p.count):
         if w.whole[k] == WHOLE:
+            # of both pads (:func:`fill_rest_margins`)
             for row in range(4 * k, 4 * k + 2):
+                # by gravity, and by accelerations to the right and upwards
                 margin = w.rest[row, 0] + w.rest[row, 1] * now.ah
                 margin += w.rest[row, 2] * now.av
                 load = 2.0 * (p.bond_tension[k] - margin * p.weight)
@@ -71,7 +86,7 @@ def note_rest_loads(p, w, now):
 
 @kernel
 def note_loads(p, w):
-    """Keep the largest tensile capacity that the bonds needed so far, with the forces in ``w``."""
+    """Keep the largest tensile capacity [N] that bonds needed so far, twice the pull of a pad, by forces now."""
     for k in range(p.count):
         if w.whole[k] == WHOLE:
             at = p.bond_number[k]
@@ -81,9 +96,9 @@ def note_loads(p, w):
 
 @kernel
 def break_pulled(p, w, unit):
-    """Break the bonds that an impact whose impulses are in ``w`` would pull at; whether there are any.
+    """Break the bonds that an impact whose impulses are in ``w`` would pull at; return whether there are any.
 
-    A rigid bond cannot bound an impulse: that it breaks is the safe side.
+    A rigid bond cannot bound an impulse: that it breaks is the safe side. ``unit``: of impulses [N s].
     """
     found = False
     for k in range(p.count):
@@ -110,7 +125,7 @@ def count_broken(p, w):
 
 @kernel
 def note_breaking(p, w, time):
-    """Note the instant at which bonds have broken."""
+    """Note the time [s] at which bonds have broken."""
     for k in range(p.count):
         at = p.bond_number[k]
         broken = p.is_bonded[k] == 1 and w.whole[k] == 0

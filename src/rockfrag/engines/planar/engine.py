@@ -80,11 +80,16 @@ _OF_CONSTRAINTS = (
 
 
 def run(cases: Cases) -> Outcomes:
-    """Return the outcomes of cases."""
+    """Return the outcomes of cases.
+
+    Systems that pure rocking can answer get its answers first; over these, the outcomes of the contact kernels are
+    written wherever something slid, flew or had no consistent mode.
+    """
     outcomes = empty_outcomes(
         cases.names, cases.scales, (PLANAR.name,), holding=cases.holding
     )
     richest = max(cases.motions, key=lambda motion: len(motion.components))
+    # as if nothing could slide
     stuck = [system.held() for system in cases.systems]
     pure = [_pure(system, richest, cases.request) for system in stuck]
     rocking = [i for i, engine in enumerate(pure) if engine is not None]
@@ -102,7 +107,10 @@ def run(cases: Cases) -> Outcomes:
 
 
 def _pure(system: System, motion: GroundMotion, request: Request) -> Engine | None:
-    """Engine of pure rocking of a system that nothing holds, if there is one."""
+    """Engine of pure rocking of a system that nothing holds, if there is one; None otherwise.
+
+    Engines that are not of planar contact are of pure rocking where they support a planar system.
+    """
     if system.holding:
         return None
     others = (each for each in engines() if not isinstance(each, PlanarEngine))
@@ -163,10 +171,9 @@ def write_contact(
     into.leaning[place] = left["leaning"] > 0
     for name in _OF_CASES:
         getattr(into, name)[place] = left[name]
-    own, first = (
-        (*place, slice(0, count)),
-        fell[:, np.newaxis] == np.arange(1, count + 1),
-    )
+    own = (*place, slice(0, count))
+    # whether each body is the one that fell first
+    first = fell[:, np.newaxis] == np.arange(1, count + 1)
     for name in ("peak_velocity", "slip", "peak_slip"):
         getattr(into, name)[own] = left[name][:, :count]
     held = (*place, slice(0, len(into.holding[i])))
@@ -190,7 +197,7 @@ def history(case: Case) -> Response:
 
 
 def without_slip(response: Response) -> Response:
-    """Give a response of pure rocking the columns of one with friction."""
+    """Give a response of pure rocking the columns of one with friction: slips, all zero, and energy lost to it."""
     bodies = response.slip.shape[1]
     states = {name: pair[2 - bodies :] for pair, name in ROCKING_MODES.items()}
     after = np.array(
@@ -259,7 +266,10 @@ def contact_outcomes(
 
 
 def closing_of(system: System) -> float:
-    """Speed over √(g b) below which contacts of a system stay closed after an impact [-]."""
+    """Speed over √(g b) below which contacts of a system stay closed after an impact [-].
+
+    b is half the width of the uppermost body.
+    """
     return CLOSING if system.count < 3 else CLOSING_OF_COLUMNS
 
 
@@ -315,24 +325,17 @@ class ContactRun:
         """Return the response that the contact kernels wrote."""
         case, history = self.case, self.history
         outcome = without_plate(np.array(self.work["outcome"]), case.system)
-        done, count, fallen = (
-            len(history),
-            case.system.count,
-            int(outcome["overturned_body"]),
-        )
+        count, fallen = case.system.count, int(outcome["overturned_body"])
         # the lowest body of an isolated system is the plate
         first = int(self.body["count"]) - count
         above = slice(first, first + count)
-        centres = history["q"][:, 3 * first : 3 * (first + count)]
-        centres = centres.reshape(done, count, 3)
-        speeds = history["v"][:, 3 * first : 3 * (first + count)]
-        speeds = speeds.reshape(done, count, 3)
+        # x, y and θ of each body, and their rates, shape (samples, bodies, 3)
+        of_bodies, each = slice(3 * first, 3 * (first + count)), (-1, count, 3)
+        centres = history["q"][:, of_bodies].reshape(each)
+        speeds = history["v"][:, of_bodies].reshape(each)
         normal, shear = history["normal"][:, above], history["shear"][:, above]
         state, slides = _modes(history["mode"], count, first)
         table = _contact_events(self.contact_events, first, count)
-        meets = np.array(
-            [np.abs(np.diff([0.0, *w])).max() for w in table["omega_before"]]
-        )
         return Response(
             system=case.system,
             time=self.time,
@@ -355,7 +358,7 @@ class ContactRun:
             friction_force=shear,
             friction_demand=responses.sampled_demand(normal, shear),
             least_normal_force=np.asarray(normal.min(axis=0)),
-            grazings=int((table["kind"].eq("impact") & (meets < GRAZING_SPEED)).sum()),
+            grazings=_grazings(table),
             forced=int(self.work["forced"]),
             **{
                 name: int(outcome[name])
@@ -364,7 +367,7 @@ class ContactRun:
         )
 
     def _constraints(self) -> pd.DataFrame:
-        """Make the table of what holds the bodies."""
+        """Make the table of what holds the bodies: hits, forces [N], strokes [m] and times of breaking [s]."""
         names, outcome = self.case.system.holding, self.work["outcome"]
         table = {"constraint": np.arange(1, len(names) + 1), "name": list(names)}
         for column in columns("constraints"):
@@ -372,7 +375,7 @@ class ContactRun:
         return pd.DataFrame(table)
 
     def _energies(self) -> pd.DataFrame:
-        """Balance of energy by cause over time [J]."""
+        """Return the table of energies [J] over time: kinetic, potential, work, losses by contact, friction."""
         p, history, contact_events = self.body, self.history, self.contact_events
         count = int(self.body["count"])
         inertia, at = 1.0 / p["inverse"][: 3 * count], slice(1, 3 * count, 3)
@@ -405,14 +408,22 @@ class ContactRun:
 
 
 def _modes(numbers: Ints, blocks: int, first: int = 0) -> tuple[Ints, Ints]:
-    """Contact states and signs of slip of bodies from the ``first`` on, each of shape (n, blocks)."""
+    """Contact states and signs of slip of bodies from the ``first`` on, each of shape (n, blocks).
+
+    ``numbers`` are modes as ``search.mode_number`` writes them, shape (n,).
+    """
+    # a digit of four bits for each contact: two for its closed ends, two for the sign of slip plus one
     places = 4 * np.arange(first, first + blocks)
     digits = (numbers[:, np.newaxis] >> places) & 15
     return _STATES[digits & 3], (digits >> 2) - 1
 
 
 def _contact_events(found: NDArray[Any], first: int, blocks: int) -> pd.DataFrame:
-    """Make the table of contact events of a response, of the bodies from the ``first`` on."""
+    """Make the table of contact events of a response, of the bodies from the ``first`` on.
+
+    ``found``: records CONTACT_EVENT of the kernels, whose modes, angles and rates have the plate of an isolator
+    too; ``blocks``: number of the bodies.
+    """
     above = slice(first, first + blocks)
     before, slid = _modes(found["before"], blocks, first)
     after, slides = _modes(found["after"], blocks, first)
@@ -435,8 +446,26 @@ def _contact_events(found: NDArray[Any], first: int, blocks: int) -> pd.DataFram
     return responses.with_slips(table, after, slides, slip)
 
 
+def _grazings(contact_events: pd.DataFrame) -> int:
+    """Number of impacts of which no contact came down faster than ``GRAZING_SPEED``.
+
+    Its speed is the difference of the angular velocities of both sides, of which the ground has none.
+    """
+    fastest = np.array(
+        [
+            np.abs(np.diff([0.0, *omega])).max()
+            for omega in contact_events["omega_before"]
+        ]
+    )
+    grazes = contact_events["kind"].eq("impact") & (fastest < GRAZING_SPEED)
+    return int(grazes.sum())
+
+
 def _kind_of_change(before: Ints, after: Ints, slid: Ints, slides: Ints) -> str:
-    """Name of a contact event without an impact: what opens first, then what slides."""
+    """Name of a contact event without an impact: what opens first, then what slides.
+
+    ``before``, ``after``: contact states; ``slid``, ``slides``: signs of slip; one a body each.
+    """
     if np.any((after == FLIGHT) & (before != FLIGHT)):
         return "flight"
     if np.any((after != 0) & (before == 0)):

@@ -8,6 +8,9 @@ A column of bodies is a chain: what hangs on a body from above answers a force a
 compliance.  So contacts are eliminated from the uppermost down, each by at most three equations, and what is above
 the first contact that has changed since the last solution stands.  Contacts with walls close the chain to loops;
 their equations are solved all together.
+
+``p`` and ``w`` are records ``BODY`` and ``WORK`` (``records.py``). Equations of contact k begin at 3 k; places of
+a row or a column are the coordinates x, y and θ of the body below (0 to 2) and of that above (3 to 5).
 """
 
 from rockfrag.engines.compile.jit import inlined_kernel, kernel
@@ -19,9 +22,10 @@ SMALL = 1e-7  # pivot over its coefficient before elimination below which contac
 
 @kernel
 def solve_equations(p, w, standing, changed):
-    """Find ``w.force`` and the change of motion ``w.moved`` of all above what stands; False if singular.
+    """Find forces ``w.force`` and the change of motion ``w.moved`` of all above what stands; False if singular.
 
-    ``changed``: the uppermost contact of the column whose equations are not those of the last call.
+    ``standing``: number of bodies from below that stand still; ``changed``: the uppermost contact of the column
+    whose equations are not those of the last call.
     """
     if _is_chain(p, w):
         solved = True
@@ -67,7 +71,7 @@ def _eliminate_contact(p, w, k, on_body):
 
 @inlined_kernel
 def _hang_nothing(p, w, k):
-    """Fill compliance and motion of the uppermost body: its own, and none."""
+    """Fill compliance K and motion e of the uppermost body, k: its own inverse masses, and none."""
     for d in range(3):
         w.hanging[k, d] = 0.0
         for e in range(3):
@@ -76,7 +80,11 @@ def _hang_nothing(p, w, k):
 
 @inlined_kernel
 def _fill_small(p, w, k, on_body):
-    """Fill A, r - C e and, on a body, C' M⁻¹ of contact k side by side, in columns 0 to 2, 3 and 4 to 6."""
+    """Fill ``w.small``, the small system of contact k: A in columns 0 to 2, r - C e in 3, and C' M⁻¹ in 4 to 6.
+
+    The last ones only where the contact is ``on_body``, not on the ground. Letters as of
+    :func:`_eliminate_contact`.
+    """
     size, first, lower = w.unknowns[k], 3 * k, 3 * k - 3
     small = w.small
     for j in range(size):
@@ -107,7 +115,11 @@ def _fill_small(p, w, k, on_body):
 
 @inlined_kernel
 def _hang_on_below(p, w, k):
-    """Keep H, and hang body k on the body below: compliance M⁻¹ (1 - D' H), motion M⁻¹ D' g."""
+    """Keep H, and hang body k on the body below: compliance M⁻¹ (1 - D' H), motion M⁻¹ D' g.
+
+    Letters as of :func:`_eliminate_contact`; ``w.small`` has been solved, so that its column 3 holds g and columns
+    4 to 6 hold H.
+    """
     size, first = w.unknowns[k], 3 * k
     small = w.small
     for i in range(size):
@@ -159,7 +171,10 @@ def _reduce_one(a, width):
 
 @inlined_kernel
 def _reduce_two(a, width):
-    """Solve two equations as :func:`_reduce` does; row i has the larger pivot."""
+    """Solve two equations as :func:`_reduce` does; row i has the larger pivot.
+
+    ``b`` has the coefficients in that order, ``c11`` is that of the second equation after elimination.
+    """
     swap = abs(a[1, 0]) > abs(a[0, 0])
     i, j = (1, 0) if swap else (0, 1)
     b00, b01, b10, b11 = a[i, 0], a[i, 1], a[j, 0], a[j, 1]
@@ -180,7 +195,11 @@ def _reduce_two(a, width):
 
 @inlined_kernel
 def _reduce_three(a, width):
-    """Solve three equations as :func:`_reduce` does, without exchange; False where a pivot is small."""
+    """Solve three equations as :func:`_reduce` does, without exchange; False where a pivot is small.
+
+    ``b`` has the coefficients, ``c`` and ``d`` those of the second and third equation after one and two
+    eliminations, ``f`` the factors of equations that are taken off, ``p`` one over each pivot.
+    """
     b00, b01, b02 = a[0, 0], a[0, 1], a[0, 2]
     b10, b11, b12 = a[1, 0], a[1, 1], a[1, 2]
     b20, b21, b22 = a[2, 0], a[2, 1], a[2, 2]
@@ -241,7 +260,10 @@ def _substitute(p, w, standing):
 
 @kernel
 def _solve_jointly(p, w, standing):
-    """Solve all equations at once, whatever bodies they share."""
+    """Solve all equations at once, whatever bodies they share: (C M⁻¹ D) λ = r in ``w.matrix`` and ``w.joint``.
+
+    Returned is False if they are singular; forces and motion go where :func:`solve_equations` says.
+    """
     m = 0
     for k in range(standing, p.contacts):
         for i in range(3 * k, 3 * k + w.unknowns[k]):
@@ -256,7 +278,7 @@ def _solve_jointly(p, w, standing):
             begin = 3
         w.largest[i] = 0.0
         for j in range(m):
-            # both move the bodies between them alone
+            # row i and column j share bodies where their places, shifted by the bodies between, overlap
             other = w.place[j]
             total, shift = 0.0, 3 * (p.upper[other // 3] - p.upper[k])
             for d in range(max(begin, shift), min(6, 6 + shift)):
@@ -281,7 +303,10 @@ def _solve_jointly(p, w, standing):
 
 @kernel
 def _eliminate(w, m, singular):
-    """Solve m equations in place into ``w.joint``; False if a pivot is less than ``singular`` of its equation."""
+    """Solve m equations by Gauss's elimination with row exchange, in place, into ``w.joint``.
+
+    Returned is False if a pivot is less than ``singular`` times the largest coefficient of its equation.
+    """
     a, right = w.matrix, w.joint
     for i in range(m):
         best = i

@@ -34,7 +34,10 @@ THIN = 2.0**-20  # ... and its height, too small to matter [m]
 
 
 def with_plate(system: System) -> System:
-    """Return a planar system whose lowest body is the plate of its isolator, if it has one."""
+    """Return a planar system whose lowest body is the plate of its isolator, if it has one.
+
+    The plate is wide, thin and cannot turn; the contact under it has the friction of a dish, or none.
+    """
     support = system.support
     if support is None:
         return system
@@ -62,7 +65,10 @@ def with_plate(system: System) -> System:
 
 
 def fill_holding(p: np.void, system: System) -> None:
-    """Fill what holds a system into the record of a planar one, whose bodies are there already."""
+    """Fill what holds a planar system into its record ``BODY``, whose bodies are there already.
+
+    Walls become contacts, numbered after those of bodies with each other; ties and bonds have fields of their own.
+    """
     _describe.fill_contacts(with_attributes(p))
     p["is_held"] = len(system.holding) > 0
     if not system.holding:
@@ -79,7 +85,10 @@ def fill_holding(p: np.void, system: System) -> None:
 
 
 def _fill_walls(p: np.void, system: System, shift: int) -> None:
-    """Append a contact for each body and wall, and note which contacts share a body."""
+    """Append a contact for each body and wall of a system.
+
+    ``shift``: by how much the record counts bodies higher, 1 where a plate is the lowest.
+    """
     standing, centres = corners(system), standing_centres(system)
     middle = _origin(system)
     for number, wall in enumerate(system.constraints):
@@ -89,6 +98,7 @@ def _fill_walls(p: np.void, system: System, shift: int) -> None:
             k = _new_contact(p, body + shift, number, wall.side)
             p["wall_top"][k], p["bounce"][k] = wall.height, wall.restitution
             p["static"][k], p["kinetic"][k] = wall.friction or SMOOTH
+            # a body has four corners: left low, left high, right low, right high
             first = 4 * body + (2 if wall.side > 0 else 0)
             x, z = centres[body]
             (right, low), (top, high) = standing[first], standing[first + 1]
@@ -103,7 +113,10 @@ def _origin(system: System) -> float:
 
 
 def _new_contact(p: np.void, body: int, number: int, side: int) -> int:
-    """Append a contact of a body with a wall; its number."""
+    """Append a contact of a body with a wall, and return its number.
+
+    ``number``: of the wall among all that holds the bodies; ``side``: of the wall, -1 left or +1 right.
+    """
     k = int(p["contacts"])
     if k == ALL:
         raise InputError(
@@ -120,13 +133,17 @@ def _fill_support(p: np.void, system: System) -> None:
     support = system.support
     if support is None:
         return
+    # the support is the last of all that holds the bodies
     row = len(system.holding) - 1
-    p["is_supported"], p["support_number"], p["dish_radius"] = 1, row, math.inf
+    p["is_supported"], p["support_number"] = 1, row
+    p["dish_radius"] = math.inf
     if isinstance(support, SlidingPendulum):
         p["dish_radius"] = support.radius
     elif isinstance(support, BilinearIsolator):
-        p["is_sprung"], p["spring_stiffness"] = 1, support.stiffness
+        p["is_sprung"] = 1
+        p["spring_stiffness"] = support.stiffness
         p["spring_strength"] = support.strength
+        # stiffness of the hysteretic part before it yields [N/m]
         p["spring_rise"] = support.strength / support.yield_displacement
     if support.stroke == math.inf:
         return
@@ -138,7 +155,7 @@ def _fill_support(p: np.void, system: System) -> None:
 
 
 def _fill_ties(p: np.void, system: System, shift: int) -> None:
-    """Fill points, lengths and strengths of ties."""
+    """Fill points, lengths and strengths of ties, SI units; ``shift`` as of :func:`_fill_walls`."""
     middle = _origin(system)
     centres = standing_centres(system)
     for number, tie in enumerate(system.constraints):
@@ -166,7 +183,7 @@ def _fill_ties(p: np.void, system: System, shift: int) -> None:
 
 
 def _fill_bonds(p: np.void, system: System, shift: int) -> None:
-    """Fill what bonds bear."""
+    """Fill what bonds bear, tension [N] of each of two pads and shear [N]; ``shift`` as of :func:`_fill_walls`."""
     for row, (contact, bond) in enumerate(system.bonds, len(system.constraints)):
         k = contact + shift
         p["is_bonded"][k], p["bond_number"][k] = 1, row

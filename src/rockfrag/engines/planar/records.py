@@ -112,7 +112,7 @@ WORK = np.dtype(
         *fields("q v a", 3 * MOST),
         *whole("closed", ALL, 2),  # [contact, end] the mode: closed ends ...
         *whole("slides", ALL),  # ... and the sign of slip, 0 where a contact sticks
-        # of closed ends: 1 a corner on the face, 0 the edge of the face on the base
+        # of closed ends: CORNER or FACE_EDGE (``solve.py``)
         *whole("kind", ALL, 2),
         *fields("normal", ALL, 2),  # forces, or impulses
         *fields("shear", ALL),
@@ -211,7 +211,7 @@ def fill_geometry(p: np.void, system: System) -> None:
     Parameters
     ----------
     p : record ``BODY`` with gravity
-    system : planar bodies on each other
+    system : planar bodies on each other; its lengths are from the origins of their bases [m]
     """
     bodies, contacts, shapes = system.in_plane().bodies, system.contacts, system.shapes
     p["count"], p["weight"] = system.count, p["g"] * system.mass
@@ -220,11 +220,14 @@ def fill_geometry(p: np.void, system: System) -> None:
     foot = _describe.place_lowest(body, shapes[0])
     for k in range(1, system.count):
         below, (stand, face) = bodies[k - 1], bodies[k - 1].ends
+        # of the body below, from the middle of its base to that of its face
         right = face.middle - stand.middle
+        # of the base above, its middle from the origin of the base below
         aside = contacts[k].offset[0] + bodies[k].ends[0].middle
         carries = _describe.Face(
             half=(face.right - face.left) / 2,
             height=below.height,
+            # the body below leans as its own uneven base does
             lean=contacts[k - 1].tilt,
             right=right,
             offset=aside - (right + stand.middle),
@@ -234,7 +237,13 @@ def fill_geometry(p: np.void, system: System) -> None:
 
 
 def system_record(system: System, g: float) -> np.void:
-    """Return the record ``BODY`` of a planar system; a contact without friction is as rough as can be."""
+    """Return the record ``BODY`` of a planar system; a contact without friction is as rough as can be.
+
+    Parameters
+    ----------
+    system : planar bodies, with what holds them
+    g : acceleration of gravity [m/s²]
+    """
     p: np.void = np.zeros(1, BODY)[0]
     p["g"] = g
     whole_system, system = system, with_plate(system)

@@ -3,6 +3,10 @@
 Slip and approach change with the normal impulse at constant rates until the slip stops (E. J. Routh, Dynamics of a
 System of Rigid Bodies, 1905; J. B. Keller, Journal of Applied Mechanics 53, 1986, 1-4).
 
+``p`` and ``w`` are records ``BODY`` and ``WORK`` (``records.py``). ``q`` and ``v`` have x, y [m] and the clockwise
+rotation θ [rad] of body k, from place 3 k on, and their rates.
+A row has the motion at a contact per coordinate of the body below (places 0 to 2) and above (3 to 5).
+
 In: a record ``BODY`` and its working memory with the velocities before [m/s, rad/s]. Out: in that memory the
 velocities after, and how the contact slides. Theory there: "Static above kinetic friction in an impact".
 """
@@ -15,7 +19,7 @@ from rockfrag.engines.planar.solve import copy, end_of, fill_row, rate
 
 @kernel
 def contact_alone(p, w):
-    """Interface and end of the only closed end of the mode in ``w``; -1 if there are none or more."""
+    """Interface and end of the only closed end of the mode in ``w``; -1 and -1 if there are none or more."""
     at = -1
     for k in range(p.contacts):
         for end in range(2):
@@ -28,7 +32,10 @@ def contact_alone(p, w):
 
 @kernel
 def _felt(p, k, pushed, felt):
-    """Velocity along the row ``felt`` for a unit impulse along ``pushed``."""
+    """Velocity at contact k along the row ``felt`` for a unit impulse along the row ``pushed`` [1/kg].
+
+    Place d of a row is coordinate ``base`` + d; the body below does not count if it is the ground.
+    """
     total, base = 0.0, 3 * p.upper[k] - 3
     for d in range(3 if p.lower[k] < 0 else 0, 6):
         total += pushed[d] * p.inverse[base + d] * felt[d]
@@ -37,20 +44,19 @@ def _felt(p, k, pushed, felt):
 
 @kernel
 def strike_alone(p, w, k, end):
-    """Velocities into ``w.out`` after an impact of end ``end`` of interface k, and how it slides then.
+    """Fill ``w.out`` with the velocities after an impact of end ``end`` of interface k alone, by Routh's method.
 
     Friction is kinetic while it slides; once the slip has stopped, static friction holds it or it slides as the
-    impulse drives it.
+    impulse drives it. How it slides then goes into ``w.slides``, impulses [N s] into ``w.normal`` and ``w.shear``.
     """
     x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
     across, along = w.row[0], w.row[1]
     fill_row(p, w.q, k, x, y, -ty, tx, across)
     fill_row(p, w.q, k, x, y, tx, ty, along)
-    own, both, shear = (
-        _felt(p, k, across, across),
-        _felt(p, k, across, along),
-        _felt(p, k, along, along),
-    )
+    # W_nn, W_nt and W_tt [1/kg]: what a unit impulse brings about, across and along
+    own = _felt(p, k, across, across)
+    both = _felt(p, k, across, along)
+    shear = _felt(p, k, along, along)
     approach = rate(p, w.q, w.v, k, x, y, -ty, tx)
     slip = w.slid[k] * abs(rate(p, w.q, w.v, k, x, y, tx, ty))
     normal = tangential = 0.0

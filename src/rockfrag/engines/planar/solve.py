@@ -1,5 +1,9 @@
 """Where contacts are, and what accelerations, forces and impulses a mode has (``docs/contact.md``, 1 to 6).
 
+``p`` and ``w`` are records ``BODY`` and ``WORK`` (``records.py``). ``q`` and ``v`` have x, y [m] and the clockwise
+rotation θ [rad] of body k, from place 3 k on, and their rates.  Contact k is under body k, or at a wall; its
+ends are 0 (left) and 1 (right).
+
 In: a record ``BODY``, coordinates, velocities and a mode. Out: in the working memory accelerations [m/s², rad/s²]
 and forces [N] of the closed ends, or velocities and impulses [N s] of an impact. The equations are 1 to 3 and 7.
 """
@@ -17,11 +21,14 @@ from rockfrag.engines.planar.walls import any_closed, wall_end
 
 SHEAR, COUPLE = 2, 3
 """What an unknown of an interface is, besides the normal force at its ends 0 and 1."""
+CORNER, FACE_EDGE, EITHER = 1, 0, -1
+"""Kinds of an end of an interface: a corner of the base on the face below, the edge of that face against the base,
+and whichever of both it is as the bodies lie."""
 
 
 @inlined_kernel
 def copy(p, of, into):
-    """Copy a number for each coordinate of the bodies."""
+    """Copy the numbers of all coordinates, three a body, from ``of`` into ``into``."""
     for d in range(3 * p.count):
         into[d] = of[d]
 
@@ -35,7 +42,7 @@ def look_at(p, w, q):
 
 @inlined_kernel
 def corner_of(p, w, q, k, end):
-    """Corner (x, y) of the base of body k."""
+    """Corner (x, y) [m] of the base of body k at an end, 0 or 1, as the body lies in ``q``."""
     cx, cy = p.corner[k, end, 0], p.corner[k, end, 1]
     c, s = w.cos[k], w.sin[k]
     return q[3 * k] + cx * c + cy * s, q[3 * k + 1] - cx * s + cy * c
@@ -43,39 +50,52 @@ def corner_of(p, w, q, k, end):
 
 @inlined_kernel
 def end_of(p, w, q, k, end, kind):
-    """End of interface k in the configuration ``q``.
+    """End of interface k in the configuration ``q``, after :func:`look_at` with it.
 
-    ``kind``: 1 a corner on the face, 0 the face's edge against the base, -1 whichever it is.  Returned are point
-    (x, y), tangent (tx, ty), gap [m], how far the corner is beyond the edge [m], and the kind.
+    ``kind``: CORNER, FACE_EDGE or EITHER.
+
+    Returns
+    -------
+    x, y : the point [m]
+    tx, ty : unit tangent there, to the right; the normal, upwards, is (-ty, tx)
+    gap : between both sides [m]
+    beyond : how far the corner is beyond the edge of the face [m]
+    kind : CORNER or FACE_EDGE
     """
     if k >= p.count:
         return wall_end(p, w, q, k, end, kind)
     x, y = corner_of(p, w, q, k, end)
     if k == 0:
-        return x, y, 1.0, 0.0, y, -math.inf, 1
+        return x, y, 1.0, 0.0, y, -math.inf, CORNER
     # tangent of the face below, whose normal is (-ty, tx)
     tx = w.cos[k - 1] * p.tilt_cos[k] - w.sin[k - 1] * p.tilt_sin[k]
     ty = -(w.sin[k - 1] * p.tilt_cos[k] + w.cos[k - 1] * p.tilt_sin[k])
+    # middle of the face below
     fx, fy = p.face[k, 0], p.face[k, 1]
     ox = q[3 * k - 3] + fx * w.cos[k - 1] + fy * w.sin[k - 1]
     oy = q[3 * k - 2] - fx * w.sin[k - 1] + fy * w.cos[k - 1]
     side = 2 * end - 1
     beyond = side * ((x - ox) * tx + (y - oy) * ty) - p.half[k]
-    if kind < 0:
-        kind = 1 if beyond <= AT_EDGE * p.size else 0
-    if kind == 1:
-        return x, y, tx, ty, -ty * (x - ox) + tx * (y - oy), beyond, 1
+    if kind == EITHER:
+        kind = CORNER if beyond <= AT_EDGE * p.size else FACE_EDGE
+    if kind == CORNER:
+        return x, y, tx, ty, -ty * (x - ox) + tx * (y - oy), beyond, CORNER
+    # edge of the face, and tangent of the base above it
     ex = ox + side * p.half[k] * tx
     ey = oy + side * p.half[k] * ty
     c, s = w.cos[k], w.sin[k]
     tx = c * p.tilt_cos[k] - s * p.tilt_sin[k]
     ty = -(s * p.tilt_cos[k] + c * p.tilt_sin[k])
-    return ex, ey, tx, ty, -ty * (x - ex) + tx * (y - ey), beyond, 0
+    return ex, ey, tx, ty, -ty * (x - ex) + tx * (y - ey), beyond, FACE_EDGE
 
 
 @inlined_kernel
 def rate(p, q, v, k, x, y, dx, dy):
-    """Velocity at contact k relative to what is below at (x, y) along (dx, dy) [m/s], or of accelerations."""
+    """Velocity along (dx, dy) of body k relative to what is below it, at the point (x, y) of contact k [m/s].
+
+    ``v`` has velocities, or accelerations, whose relative acceleration without :func:`bias` is then returned
+    [m/s²].
+    """
     b = 3 * p.upper[k]
     found = dx * (v[b] + v[b + 2] * (y - q[b + 1]))
     found += dy * (v[b + 1] - v[b + 2] * (x - q[b]))
@@ -87,17 +107,18 @@ def rate(p, q, v, k, x, y, dx, dy):
 
 @inlined_kernel
 def bias(p, q, v, k, x, y, dx, dy, kind):
-    """Relative acceleration at (x, y) along (dx, dy), seen from the face, where all accelerations vanish.
+    """Relative acceleration along (dx, dy) at (x, y), seen from the face, where all accelerations vanish [m/s²].
 
     β of equation 2 in ``docs/contact.md``: the centripetal accelerations of both bodies, and Coriolis's by the
-    velocity u of the one relative to the other, as the body with the face turns (ω_f).
+    velocity u of the one relative to the other, as the body with the face turns (ω_f). ``kind`` as of
+    :func:`end_of`.
     """
     b = 3 * p.upper[k]
     omega = v[b + 2]
     rx, ry = x - q[b], y - q[b + 1]
     ax, ay = -omega * omega * rx, -omega * omega * ry
     ux, uy = v[b] + omega * ry, v[b + 1] - omega * rx
-    omega_of_face = 0.0 if kind == 1 else omega
+    omega_of_face = 0.0 if kind == CORNER else omega
     if p.lower[k] >= 0:
         omega_below = v[b - 1]
         rx, ry = x - q[b - 3], y - q[b - 2]
@@ -105,7 +126,7 @@ def bias(p, q, v, k, x, y, dx, dy, kind):
         ay += omega_below * omega_below * ry
         ux -= v[b - 3] + omega_below * ry
         uy -= v[b - 2] - omega_below * rx
-        if kind == 1:
+        if kind == CORNER:
             omega_of_face = omega_below
     ax -= 2.0 * omega_of_face * uy
     ay += 2.0 * omega_of_face * ux
@@ -201,7 +222,14 @@ def standing_bodies(p, w):
 
 @kernel
 def _fill_equations(p, w, q, v, k, sought):
-    """Fill rows, columns and right-hand sides of contact k, none if it is open (``docs/contact.md``, 3)."""
+    """Fill the equations of contact k (``docs/contact.md``, 3), none if it is open.
+
+    A closed end asks that its normal motion vanish, one that sticks also its tangential one. Equation i, from 3 k
+    on, has ``w.row[i]``, the motion that it asks for, ``w.column[i]``, the force that brings it about (the normal
+    one with the friction of a contact that slides), ``w.right[i]`` and ``w.what[i]``, an end, SHEAR or COUPLE. In
+    an impact motions are velocities, and laws of restitution add a departing speed, a share of the impulse at the
+    other end, or a couple.
+    """
     impact = sought.impact
     friction = rubbing(p, w, q, k) if sought.rubs else 0.0
     m = 3 * k
@@ -234,7 +262,7 @@ def _fill_equations(p, w, q, v, k, sought):
         end = w.drive[k]
         x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
         fill_row(p, q, k, x, y, -ty, tx, w.row[m])
-        # a couple turns body k, and what is below it the other way
+        # a couple turns body k (place 5), and what is below it (place 2) the other way
         w.column[m, :] = 0.0
         w.column[m, 5], w.column[m, 2] = 1.0, -1.0 if k > 0 else 0.0
         w.what[m] = COUPLE
@@ -247,14 +275,16 @@ def _fill_equations(p, w, q, v, k, sought):
 def solve_generally(p, w, q, v, sought, standing):
     """Solve any mode by elimination above the first ``standing`` bodies (``docs/contact.md``, 3; impacts 7).
 
-    In and out as of :func:`solve_motion`.  Three steps: motion without contact forces into ``w.out``; forces that
-    bring about what the mode asks of the motion; the motion that they add.
+    In and out as of :func:`solve_motion`, with a :class:`Sought`; False if singular. Three steps: motion without
+    contact forces into ``w.out``; forces that bring about what the mode asks of the motion; the motion that they
+    add.
     """
     _fill_motion_without_forces(p, w, q, v, sought, standing)
     for k in range(standing, p.contacts):
         _fill_equations(p, w, q, v, k, sought)
+        # place d of a row is coordinate base + d: 0 to 2 of the body below, which count unless it is the ground or
+        # stands, and 3 to 5 of the body above
         base = 3 * p.upper[k] - 3
-        # coordinates of the body below count unless it is the ground, or stands
         begin = 3 if k == standing or p.lower[k] < 0 else 0
         for i in range(3 * k, 3 * k + w.unknowns[k]):
             for d in range(begin, 6):
@@ -285,7 +315,10 @@ def _fill_motion_without_forces(p, w, q, v, sought, standing):
 
 @kernel
 def _keep_forces(p, w, q, impact, standing):
-    """Sum up the unknowns that were solved to normal forces of ends and shears of contacts."""
+    """Sum up the unknowns that were solved to normal forces of ends and shears of contacts [N], or [N s].
+
+    ``impact``: whether they are impulses; ``standing``: number of bodies from below that stand still.
+    """
     for k in range(p.contacts):
         w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0
     for k in range(standing, p.contacts):
@@ -304,7 +337,10 @@ def _keep_forces(p, w, q, impact, standing):
 
 @kernel
 def _carry(p, w, q, ah, av, standing):
-    """Forces under the bodies that stand still, from the uppermost down."""
+    """Fill the forces [N] under the first ``standing`` bodies, which do not move, from the uppermost down.
+
+    ``ah``, ``av``: accelerations of the ground [m/s²].
+    """
     for body in range(standing - 1, -1, -1):
         # of what is above on the body, the moment clockwise about its centre
         push_x, push_y, moment = 0.0, 0.0, 0.0
@@ -328,12 +364,17 @@ def _carry(p, w, q, ah, av, standing):
 
 @kernel
 def _hold_still(p, w, q, k, push_x, push_y, moment):
-    """Forces at interface k under a push at the centre of body k and a moment, clockwise, that do not move it."""
+    """Fill the forces at interface k that keep body k still under a push and a moment.
+
+    ``push_x``, ``push_y``: at its centre [N]; ``moment``: clockwise [N m]. The far end bears what the moment about
+    the near one asks.
+    """
     x, y, tx, ty, _, _, _ = end_of(p, w, q, k, 0, w.kind[k, 0])
     far_x, far_y, _, _, _, _, _ = end_of(p, w, q, k, 1, w.kind[k, 1])
     rx, ry = x - q[3 * k], y - q[3 * k + 1]
     shear = push_x * tx + push_y * ty
     push = push_y * tx - push_x * ty
+    # arms of the normals at both ends about the centre
     near = -ty * ry - tx * rx
     far = -ty * (far_y - q[3 * k + 1]) - tx * (far_x - q[3 * k])
     w.shear[k] = shear
@@ -345,7 +386,10 @@ def _hold_still(p, w, q, k, push_x, push_y, moment):
 
 @inlined_kernel
 def _solve_top(p, w, q, v, ah, av):
-    """What :func:`solve_motion` does where of at most two bodies only the upper one moves, solved by hand."""
+    """Do as :func:`solve_motion` where of at most two bodies only the upper one moves, solved by hand.
+
+    ``ah``, ``av``: accelerations of the ground [m/s²].
+    """
     k = p.count - 1
     fx, fy = -ah, -(p.g + av)
     light, slow = p.inverse[3 * k], p.inverse[3 * k + 2]
@@ -370,7 +414,7 @@ def _solve_top(p, w, q, v, ah, av):
 def _press_flat(p, w, q, k, fx, fy):
     """Forces of an interface closed at both ends, which keep body k level under accelerations fx, fy of its own.
 
-    Returned are the force on the body, and its moment, clockwise, about the centre of body 0.
+    Returned are the force on the body, x and y [N], and its moment, clockwise, about the centre of body 0 [N m].
     """
     light = p.inverse[3 * k]
     x, y, tx, ty, _, _, _ = end_of(p, w, q, k, 0, w.kind[k, 0])
@@ -396,7 +440,8 @@ def _press_flat(p, w, q, k, fx, fy):
 def _press_at_end(p, w, q, v, k, fx, fy):
     """Forces of an interface closed at one end, about which body k turns, under accelerations fx, fy of its own.
 
-    Returned are force and torque on the body, and the force's moment, clockwise, about the centre of body 0.
+    Returned are the force on the body, x and y [N], its torque [N m], and its moment, clockwise, about the centre
+    of body 0 [N m].
     """
     end = 0 if w.closed[k, 0] == 1 else 1
     light, slow = p.inverse[3 * k], p.inverse[3 * k + 2]

@@ -1,5 +1,8 @@
 """One step between contact events, and the first contact event in it.
 
+``p`` and ``w`` are records ``BODY`` and ``WORK`` (``records.py``). ``q`` and ``v`` have x, y [m] and the clockwise
+rotation θ [rad] of body k, from place 3 k on, and their rates.
+
 In: coordinates and velocities at an instant and a mode. Out: those at the end of the step [s], or at the first
 event in it. What must stay positive: ``docs/contact.md``, equations 4 to 6; the step: Dormand and Prince (1980).
 """
@@ -12,6 +15,8 @@ from rockfrag.engines.planar.bonds import bond_margin
 from rockfrag.engines.planar.search import BONDED
 from rockfrag.engines.planar.solve import (
     AT_EDGE,
+    CORNER,
+    EITHER,
     copy,
     end_of,
     look_at,
@@ -47,26 +52,31 @@ GAP, EDGE = 0, 2
 FRICTION, FALL, BREAK = 4, 5, 6
 
 
+MOTIONS, FORCES = False, True
+"""What margins are taken of: of motions alone, or of forces too."""
+
+
 class Stretch(NamedTuple):
     """A stretch of time over which the accelerations of the ground are linear."""
 
     length: float  # [s]
     ah: float  # horizontal acceleration at its beginning [m/s²]
     av: float  # likewise upwards
-    rise_h: float  # by which they rise over it
+    # by which they rise over it [m/s²]
+    rise_h: float
     rise_v: float
 
 
 @kernel
 def beginning(stretch, part):
-    """First ``part`` of a stretch, a fraction of it."""
+    """First ``part`` of a stretch, a fraction of its length [-], as a :class:`Stretch`."""
     rise_h, rise_v = part * stretch.rise_h, part * stretch.rise_v
     return Stretch(part * stretch.length, stretch.ah, stretch.av, rise_h, rise_v)
 
 
 @kernel
 def ground_at(stretch, part):
-    """Accelerations of the ground at a fraction of a stretch."""
+    """Horizontal and upward acceleration of the ground [m/s²] at a fraction ``part`` of a stretch."""
     return stretch.ah + part * stretch.rise_h, stretch.av + part * stretch.rise_v
 
 
@@ -77,19 +87,28 @@ def start_step(p, w):
     copy(p, w.v, w.v0)
     copy(p, w.a, w.a0)
     start_ties(p, w)
+    # speeds at which open ends part
     for k in range(p.contacts):
         for end in range(2):
             w.early[k, end] = 0.0
             if w.closed[k, end] == 0:
-                x, y, tx, ty, _, _, _ = end_of(p, w, w.q0, k, end, -1)
+                x, y, tx, ty, _, _, _ = end_of(p, w, w.q0, k, end, EITHER)
                 w.early[k, end] = rate(p, w.q0, w.v0, k, x, y, -ty, tx)
 
 
 @kernel
 def take_step(p, w, stretch, energy_balance):
-    """Go on from q0, v0, a0 to q1, v1, a1 by Dormand and Prince's pair of order 5.
+    """Go on from q0, v0, a0 to q1, v1, a1 in ``w`` by Dormand and Prince's pair of order 5.
 
-    Returned are the work of the ground, what friction and what ties have taken of it [J].
+    Parameters
+    ----------
+    p, w : records ``BODY`` and ``WORK``
+    stretch : the step and its ground
+    energy_balance : whether work and losses are wanted
+
+    Returns
+    -------
+    Work of the ground, energy lost to friction, and energy given to ties [J]; zero if not wanted.
     """
     h = stretch.length
     size = 3 * p.count
@@ -100,24 +119,29 @@ def take_step(p, w, stretch, energy_balance):
     if energy_balance:
         look_at(p, w, w.q0)
         solve_motion(p, w, w.q0, w.v0, stretch.ah, stretch.av)
-        first, two, three = _powers(p, w, w.q0, w.v0, stretch.ah, stretch.av)
-        work += WEIGHTS[6, 0] * first
-        friction_loss += WEIGHTS[6, 0] * two
-        tied += WEIGHTS[6, 0] * three
+        # powers are integrated with the weights of the solution of order 5
+        of_ground, of_friction, of_ties = _powers(
+            p, w, w.q0, w.v0, stretch.ah, stretch.av
+        )
+        work += WEIGHTS[6, 0] * of_ground
+        friction_loss += WEIGHTS[6, 0] * of_friction
+        tied += WEIGHTS[6, 0] * of_ties
     for stage in range(1, 7):
         for d in range(size):
             if stage == 1:
                 w.v1[d] = w.v0[d] + h * 0.2 * w.ka[d, 0]
                 w.q1[d] = w.q0[d] + h * 0.2 * w.kv[d, 0]
                 continue
-            speed, turn = WEIGHTS[stage, 0] * w.kv[d, 0], WEIGHTS[stage, 0] * w.ka[d, 0]
+            # weighted rates of the stages before: velocity and acceleration
+            velocity = WEIGHTS[stage, 0] * w.kv[d, 0]
+            acceleration = WEIGHTS[stage, 0] * w.ka[d, 0]
             for early in range(1, stage):
                 weight = WEIGHTS[stage, early]
                 if weight != 0.0:
-                    speed += weight * w.kv[d, early]
-                    turn += weight * w.ka[d, early]
-            w.v1[d] = w.v0[d] + h * turn
-            w.q1[d] = w.q0[d] + h * speed
+                    velocity += weight * w.kv[d, early]
+                    acceleration += weight * w.ka[d, early]
+            w.v1[d] = w.v0[d] + h * acceleration
+            w.q1[d] = w.q0[d] + h * velocity
         look_at(p, w, w.q1)
         ah, av = ground_at(stretch, INSTANTS[stage])
         solve_motion(p, w, w.q1, w.v1, ah, av)
@@ -125,10 +149,10 @@ def take_step(p, w, stretch, energy_balance):
             w.kv[d, stage] = w.v1[d]
             w.ka[d, stage] = w.out[d]
         if energy_balance and 2 <= stage <= 5:
-            first, two, three = _powers(p, w, w.q1, w.v1, ah, av)
-            work += WEIGHTS[6, stage] * first
-            friction_loss += WEIGHTS[6, stage] * two
-            tied += WEIGHTS[6, stage] * three
+            of_ground, of_friction, of_ties = _powers(p, w, w.q1, w.v1, ah, av)
+            work += WEIGHTS[6, stage] * of_ground
+            friction_loss += WEIGHTS[6, stage] * of_friction
+            tied += WEIGHTS[6, stage] * of_ties
     copy(p, w.out, w.a1)
     return work * h, friction_loss * h, tied * h
 
@@ -137,7 +161,8 @@ def take_step(p, w, stretch, energy_balance):
 def step_error(p, w, h):
     """Error of a step's velocities by the pair's own estimate over √(g b) [-]; large in Painlevé's cases.
 
-    The estimate is the difference of the solutions of order 5 and 4 (Dormand and Prince, 1980, table 2).
+    The estimate is the difference of the solutions of order 5 and 4 (Dormand and Prince, 1980, table 2), of the
+    accelerations at the stages in ``w.ka``; ``h``: length of the step [s].
     """
     worst = 0.0
     for d in range(3 * p.count):
@@ -209,7 +234,11 @@ def least_margin(p, w, q, v, forces):
 
 @kernel
 def _margin_of_closed_end(p, w, q, k, end, forces):
-    """Least margin of a closed end: its force over the weight, and how far its corner is from an edge [-]."""
+    """Least margin of a closed end: its force over the weight, and how far its corner is from an edge [-].
+
+    What is negative is noted in ``w.fails``: the force (GAP), the edge, and the fall of a body that hangs beside
+    its face.
+    """
     slides = w.slides[k] != 0
     margin = math.inf
     if forces and w.whole[k] == 0:
@@ -223,11 +252,11 @@ def _margin_of_closed_end(p, w, q, k, end, forces):
         return margin
     _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, w.kind[k, end])
     inside = AT_EDGE - beyond / p.size
-    inside = (inside if w.kind[k, end] == 1 else -inside) + TOUCH
+    inside = (inside if w.kind[k, end] == CORNER else -inside) + TOUCH
     if inside < 0.0:
         w.fails[k, EDGE + end] = 1
     if inside < 0.0 and k < p.count:
-        _, _, _, _, over, _, _ = end_of(p, w, q, k, end, 1)
+        _, _, _, _, over, _, _ = end_of(p, w, q, k, end, CORNER)
         if over < -HANGING * p.size:
             w.fails[k, FALL] = 1
     return min(margin, inside)
@@ -235,8 +264,11 @@ def _margin_of_closed_end(p, w, q, k, end, forces):
 
 @kernel
 def _margin_of_open_end(p, w, q, k, end):
-    """Least margin of an open end: its gap, and how far the base still reaches over the face [-]."""
-    _, _, _, _, gap, beyond, _ = end_of(p, w, q, k, end, -1)
+    """Least margin of an open end: its gap, and how far the base still reaches over the face, over b [-].
+
+    A gap that has closed is noted in ``w.fails``.
+    """
+    _, _, _, _, gap, beyond, _ = end_of(p, w, q, k, end, EITHER)
     margin = gap / p.size + TOUCH
     if margin < 0.0:
         w.fails[k, GAP + end] = 1
@@ -247,9 +279,10 @@ def _margin_of_open_end(p, w, q, k, end):
 
 @kernel
 def _margin_of_friction(p, w, q, v, k, forces, pressed):
-    """Margin of a closed contact that slides, its slip speed, or sticks, the shear that friction has left [-].
+    """Margin of a closed contact [-], noted in ``w.fails``: of its slip if it slides, of its shear if it sticks.
 
-    ``pressed``: sum of the normal forces of its ends [N].
+    Slip counts over √(g b), in its own direction; shear is what friction has left of µ ΣN, over the weight.
+    ``pressed``: ΣN, sum of the normal forces of its ends [N].
     """
     margin = math.inf
     if w.slides[k] != 0:
@@ -268,10 +301,15 @@ def _margin_of_friction(p, w, q, v, k, forces, pressed):
 
 @kernel
 def _margin_of_fall(p, w, q, k):
-    """Angle that body k, and the contact below it, have left to a right angle [rad]."""
-    turned = abs(q[3 * k + 2])
+    """Angle that body k has left to a right angle, from upright and from the body below [rad].
+
+    A fall is noted in ``w.fails``: where that angle is used up, or the base has left the edge of the face below.
+    """
+    rotation = q[3 * k + 2]
+    turned = abs(rotation)
     if k > 0:
-        turned = max(turned, abs(q[3 * k + 2] - q[3 * k - 1]))
+        rotation_below = q[3 * k - 1]
+        turned = max(turned, abs(rotation - rotation_below))
     margin = 0.5 * math.pi - turned
     # what sticks with an end closed stays over the face until it has turned
     holds = w.closed[k].any() and w.slides[k] == 0
@@ -309,7 +347,7 @@ def _least_of_holding(p, w, q, v, forces):
 def off_the_edge(p, w, q, k):
     """Whether the base above interface k no longer reaches over the face below."""
     for end in range(2):
-        _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, 1)
+        _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, CORNER)
         if beyond < AT_EDGE * p.size - 2.0 * p.half[k]:
             return True
     return False
@@ -344,6 +382,7 @@ def margin_at(p, w, tau, stretch, forces):
         rise = w.q1[d] - q0 - v0 - a0
         turn = v1 - v0 - 2.0 * a0
         bend = a1 - a0
+        # coefficients of τ³ to τ⁵
         c3 = 10.0 * rise - 4.0 * turn + bend
         c4 = -15.0 * rise + 7.0 * turn - 2.0 * bend
         c5 = 6.0 * rise - 3.0 * turn + bend
@@ -360,21 +399,31 @@ def margin_at(p, w, tau, stretch, forces):
 
 @kernel
 def first_failure(p, w, failure, stretch):
-    """Fraction of the step just after the least margin has become negative; goes to the state there.
+    """Find the fraction of the step just after the least margin has become negative, and go to the state there.
 
-    ``failure``: a fraction of the step, the negative margin there, and whether a force is among what fails.  Where
-    none is, only motions are looked at on the way, which needs no equations to be solved.
+    Where no force is among what fails, motions alone are followed on the way, which needs no equations to be
+    solved; if a force turns out to fail at the instant found, it is sought again with forces.
+
+    Parameters
+    ----------
+    p, w : records ``BODY`` and ``WORK``
+    failure : a fraction of the step, the negative margin there, and whether a force is among what fails
+    stretch : the step and its ground
+
+    Returns
+    -------
+    The fraction [-].
     """
     high, at_high, by_force = failure
     if not by_force:
-        at_low = margin_at(p, w, 0.0, stretch, False)
-        high = _root(p, w, (at_low, high, at_high), stretch, False)
-        at_high = margin_at(p, w, high, stretch, True)
+        at_low = margin_at(p, w, 0.0, stretch, MOTIONS)
+        high = _root(p, w, (at_low, high, at_high), stretch, MOTIONS)
+        at_high = margin_at(p, w, high, stretch, FORCES)
         if not force_fails(p, w):
             return high
-    at_low = margin_at(p, w, 0.0, stretch, True)
-    high = _root(p, w, (at_low, high, at_high), stretch, True)
-    margin_at(p, w, high, stretch, True)
+    at_low = margin_at(p, w, 0.0, stretch, FORCES)
+    high = _root(p, w, (at_low, high, at_high), stretch, FORCES)
+    margin_at(p, w, high, stretch, FORCES)
     return high
 
 
@@ -404,6 +453,7 @@ def _root(p, w, bracket, stretch, forces):
         width = abs(x2 - x1)
         if width <= WIDTH:
             return x1 if f1 < 0.0 else x2
+        # bisection, unless the inverse parabola through three points is to be trusted
         part = 0.5
         xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
         if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi:
@@ -417,14 +467,15 @@ def _root(p, w, bracket, stretch, forces):
 def comes_near(p, w, length):
     """Whether in a step a gap first narrowed and widens as it ends, after ``look_at`` with ``w.q1``.
 
-    ``w.early`` has the speed at which each gap opened as the step began, 0 for ends that were closed.
+    ``w.early`` has the speed at which each gap opened as the step began [m/s], 0 for ends that were closed;
+    ``length``: of the step [s].
     """
     if p.ties > 0 and turns_back(p, w, length):
         return True
     for k in range(p.contacts):
         for end in range(2):
             if w.early[k, end] < 0.0:
-                x, y, tx, ty, gap, _, _ = end_of(p, w, w.q1, k, end, -1)
+                x, y, tx, ty, gap, _, _ = end_of(p, w, w.q1, k, end, EITHER)
                 if k >= p.count and gap > -w.early[k, end] * length:
                     # it cannot have come as far as the wall
                     continue

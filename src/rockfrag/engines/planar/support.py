@@ -24,13 +24,13 @@ def displacement(p, q):
 
 @inlined_kernel
 def slope(p, w, q, k):
-    """Slope of the dish under contact k, 0 if it is none."""
+    """Slope of the dish under contact k [-], 0 if it is none."""
     return displacement(p, q) / p.dish_radius if w.whole[k] == GUIDED else 0.0
 
 
 @inlined_kernel
 def rubbing(p, w, q, k):
-    """Force against the slip of contact k over its normal force: of friction, and of a dish."""
+    """Force against the slip of contact k over its normal force [-]: of friction, and of the slope of a dish."""
     found = w.slides[k] * p.kinetic[k]
     if w.whole[k] == GUIDED and w.slides[k] != 0:
         found += slope(p, w, q, k)
@@ -39,7 +39,7 @@ def rubbing(p, w, q, k):
 
 @kernel
 def hysteretic_force(p, w, q):
-    """Force of the hysteretic part of a bilinear spring [N]."""
+    """Force of the hysteretic part of a bilinear spring [N]: its strength once it yields, elastic before."""
     if w.yields != 0:
         return w.yields * p.spring_strength
     return p.spring_rise * (displacement(p, q) - w.plastic)
@@ -71,7 +71,7 @@ def least_support_margin(p, w, q, v):
 
 @kernel
 def change_spring(p, w):
-    """Let the hysteretic part of a spring that fails yield, or unload."""
+    """Let the hysteretic part of a spring that fails yield, or unload and be elastic about a new rest."""
     if w.spring_fails == 0:
         return
     w.spring_fails = 0
@@ -84,7 +84,7 @@ def change_spring(p, w):
 
 @kernel
 def note_stroke(p, w):
-    """Keep the largest displacement of the plate."""
+    """Keep the largest displacement of the plate [m]."""
     if p.is_supported == 1:
         at = p.support_number
         w.outcome.stroke[at] = max(w.outcome.stroke[at], abs(displacement(p, w.q)))

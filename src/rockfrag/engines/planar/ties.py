@@ -2,6 +2,9 @@
 
 A tie is a spring with a dashpot; that it becomes taut or slack ends a step, so within one its force is smooth.
 
+``p`` and ``w`` are records ``BODY`` and ``WORK`` (``records.py``). ``q`` and ``v`` have x, y [m] and the clockwise
+rotation θ [rad] of body k, from place 3 k on, and their rates.
+
 In: a record ``BODY``, coordinates and velocities. Out: tensions [N], the accelerations that they cause [m/s²], and
 margins that are negative once a tie changes its state.
 """
@@ -12,13 +15,21 @@ from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.planar.support import spring_force
 
 SLACK, TAUT, PUSHED, BROKEN = 0, 1, -1, 2
-"""States of a tie."""
+"""States of a tie; a bracket, which pushes too, is PUSHED where it is shorter than its play allows."""
 JUST = 1e-13  # slack before a change is seen: of lengths over b, forces over the weight [-]
 
 
 @kernel
 def _stretched(p, w, q, v, t):
-    """Point of tie t on its body from the centre, direction towards its other end, length and its rate."""
+    """Geometry of tie t, after ``look_at`` with ``q``.
+
+    Returns
+    -------
+    rx, ry : point on its body, from the centre of gravity [m]
+    ex, ey : unit vector from there towards its other end
+    length : of the tie [m]
+    speed : rate of the length [m/s]
+    """
     b = 3 * p.tie_body[t]
     c, s = w.cos[p.tie_body[t]], w.sin[p.tie_body[t]]
     px, py = p.tie_point[t, 0], p.tie_point[t, 1]
@@ -55,7 +66,10 @@ def is_any_taut(p, w):
 
 @kernel
 def fill_tie_accelerations(p, w, q, v):
-    """Accelerations by ties and the spring of an isolator into ``w.drift``, after ``look_at`` with ``q``."""
+    """Fill ``w.drift`` with accelerations [m/s², rad/s²] by ties and the spring of an isolator.
+
+    ``look_at`` must have been called with ``q``.
+    """
     for d in range(3 * p.count):
         w.drift[d] = 0.0
     if p.is_sprung == 1:
@@ -73,7 +87,7 @@ def fill_tie_accelerations(p, w, q, v):
 
 @kernel
 def power(p, w, q, v):
-    """Power that ties and a spring take from the bodies [W]."""
+    """Power that ties and the spring of an isolator take from the bodies [W]."""
     taken = spring_force(p, w, q) * v[0] if p.is_sprung == 1 else 0.0
     for t in range(p.ties):
         force, speed = tension(p, w, q, v, t)
@@ -83,14 +97,17 @@ def power(p, w, q, v):
 
 @kernel
 def start_ties(p, w):
-    """Note the rates of lengths at the start of a step."""
+    """Note the rates of lengths [m/s] at the start of a step in ``w.tie_early``."""
     for t in range(p.ties):
         _, _, _, _, _, w.tie_early[t] = _stretched(p, w, w.q0, w.v0, t)
 
 
 @kernel
 def turns_back(p, w, time):
-    """Whether a slack tie that lengthens and then shortens, or the reverse, may get taut in a step [s]."""
+    """Whether a slack tie that lengthens and then shortens, or the reverse, may get taut in a step.
+
+    ``time``: length of the step [s]; ``w.tie_early`` has the rates of lengths as it began.
+    """
     for t in range(p.ties):
         if w.taut[t] == SLACK:
             _, _, _, _, length, speed = _stretched(p, w, w.q1, w.v1, t)
@@ -105,7 +122,11 @@ def turns_back(p, w, time):
 
 @kernel
 def least_tie_margin(p, w, q, v):
-    """Least of all that must stay positive lest a tie change its state; ``w.tie_fails`` says which do."""
+    """Least margin of all ties [-], negative where one changes its state; ``w.tie_fails`` says which do.
+
+    A slack tie must not get taut; one that pulls must go on pulling, and bear less than its strength, over the
+    weight.
+    """
     least = math.inf
     for t in range(p.ties):
         margin = math.inf
@@ -122,7 +143,7 @@ def least_tie_margin(p, w, q, v):
 
 @kernel
 def _slack_margin(p, w, q, v, t):
-    """Margin of a slack tie: its length within its natural ones, or no force if the dashpot held it."""
+    """Margin of a slack tie [-]: its length within its natural ones, over b, or no force if the dashpot held."""
     _, _, _, _, length, speed = _stretched(p, w, q, v, t)
     k, c = p.tie_stiffness[t], p.tie_damping[t]
     longer = length - p.tie_long[t]
@@ -136,7 +157,10 @@ def _slack_margin(p, w, q, v, t):
 
 @kernel
 def change_ties(p, w, time):
-    """Let the ties that fail get taut, slacken or break; whether any does."""
+    """Let the ties that fail get taut, slacken or break at a time [s]; return whether any does.
+
+    The record of outcomes counts them by ``p.tie_number``, their place among all that holds the bodies.
+    """
     changed = False
     for t in range(p.ties):
         if w.tie_fails[t] == 0:
@@ -146,6 +170,7 @@ def change_ties(p, w, time):
         at = p.tie_number[t]
         if w.taut[t] == SLACK:
             _, _, _, _, length, _ = _stretched(p, w, w.q, w.v, t)
+            # a bracket pulls beyond the middle of its play, and pushes below
             middle = 0.5 * (p.tie_long[t] + p.tie_short[t])
             longer = p.is_bracket[t] == 0 or length > middle
             w.taut[t] = TAUT if longer else PUSHED
@@ -153,6 +178,7 @@ def change_ties(p, w, time):
             continue
         force, _ = tension(p, w, w.q, w.v, t)
         w.outcome.largest_force[at] = max(w.outcome.largest_force[at], abs(force))
+        # up to rounding: it fails either as its strength is reached or as its force vanishes
         if abs(force) >= p.tie_strength[t] * (1.0 - 1e-9):
             w.taut[t] = BROKEN
             w.outcome.breaking_time[at] = time

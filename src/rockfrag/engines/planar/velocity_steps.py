@@ -74,12 +74,14 @@ class Part:
 
 @dataclass
 class Between:
-    """A case that goes from jump to jump, and what is told of it so far."""
+    """A case that goes from jump to jump: its system, its state now, and what has become of it so far."""
 
     case: Case
-    work: np.void = field(default_factory=records.working_memory)
+    work: np.void = field(default_factory=records.working_memory)  # WORK
+    # OUTCOME of all parts so far
     outcome: np.void = field(default_factory=lambda: np.zeros(1, records.OUTCOME)[0])
-    forced: int = 0
+    forced: int = 0  # times that contacts were made to stay closed
+    # energies so far by ledger [J]
     spent: dict[str, float] = field(default_factory=lambda: dict.fromkeys(LEDGERS, 0.0))
 
     def __post_init__(self) -> None:
@@ -103,7 +105,10 @@ class Between:
         self.outcome["slip"] = self._look(self.body, 0.0, 0.0).samples["slip"][0]
 
     def _look(self, body: np.void, ah: float, av: float) -> Part:
-        """Let contacts take up the state as it is, and no time pass."""
+        """Let contacts take up the state as it is, and no time pass; return the part, which has one sample.
+
+        ``body``: record BODY; ``ah``, ``av``: accelerations of the ground to the right and upwards [m/s²].
+        """
         still = Shaking(
             np.full(1, ah), np.full(1, av), 1.0, 1.0, substeps=1, free_samples=0
         )
@@ -139,7 +144,7 @@ class Between:
         return Part(time, ground, kept.history[:done], changes, at)
 
     def _through(self, piece: Piece, *, keeps: bool) -> Part:
-        """Integrate a part of the motion."""
+        """Integrate a part of the motion; ``keeps`` samples and contact events."""
         request = self.case.request
         steps = step_count(self.case.system, piece.dt, request.g, request.step)
         shaking = Shaking(
@@ -151,10 +156,15 @@ class Between:
         return self._placed(part, piece.begin)
 
     def _jump(self, piece: Piece, jump: Jump, *, is_first: bool) -> Part:
-        """Give all bodies the velocity of a jump, and let their contacts answer."""
+        """Give all bodies the velocity of a jump, let their contacts answer, and return what that adds.
+
+        Seen from the base bodies get the velocity opposite to the jump; the answer of the contacts is an impact
+        without an approach. ``is_first``: whether the sample before the jump is kept too.
+        """
         ah, av = float(piece.ground[0]), float(piece.upward[0])
         before = self._look(self.body, ah, av).samples if is_first else None
         count, old = int(self.body["count"]), self.state[1].copy()
+        # velocities of all bodies to the right, and upwards
         self.state[1, 0 : 3 * count : 3] -= jump.right
         self.state[1, 1 : 3 * count : 3] -= jump.up
         shifted = self.state[1].copy()
@@ -183,19 +193,19 @@ class Between:
         return self._placed(part, piece.begin)
 
     def _kinetic(self, velocities: Floats) -> float:
-        """Kinetic energy relative to the base [J]."""
+        """Kinetic energy [J] relative to the base, of velocities, three a body, shape (3 MOST,)."""
         free = 3 * int(self.body["count"])
         inertia = 1.0 / self.body["inverse"][:free]
         return float(0.5 * (inertia * velocities[:free] ** 2).sum())
 
     def _placed(self, part: Part, begin: float) -> Part:
-        """A part that begins at an instant [s]."""
+        """Return a part with its times, which begin at zero, moved to begin at an instant [s]."""
         part.time = part.time + begin
         part.contact_events["time"] += begin
         return part
 
     def _add(self, begin: float) -> None:
-        """Add what the kernels told of a part that begins at an instant [s]."""
+        """Add the outcome that the kernels wrote of a part that begins at an instant [s] to that so far."""
         outcome, more = self.outcome, self.work["outcome"]
         for name in _LARGEST:
             outcome[name] = np.maximum(outcome[name], more[name])

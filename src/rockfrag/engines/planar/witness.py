@@ -4,8 +4,11 @@ What is above a contact has been pushed by that contact and by nothing else, so 
 angular momentum is the resultant of the contact and where it acts.  Nothing here is shared with the search and its
 equations.  Impulses on bodies from outside the column would be taken from the change first.
 
+``p`` and ``w`` are records ``BODY`` and ``WORK`` (``records.py``). ``q`` and ``v`` have x, y [m] and the clockwise
+rotation θ [rad] of body k, from place 3 k on, and their rates.
+
 In: a record ``BODY`` and its working memory with the velocities before and after an impact. Out: whether a law of
-impacts (equations 7 to 9) is broken by more than the tolerance.
+impacts (equations 8 to 10) is broken by more than the tolerance.
 """
 
 from typing import NamedTuple
@@ -31,20 +34,25 @@ class Limits(NamedTuple):
 
 @kernel
 def _turned(x, y, angle):
-    """Vector turned clockwise."""
+    """Vector (x, y) turned clockwise by an angle [rad]."""
     s, c = sin_cos(angle)
     return x * c + y * s, y * c - x * s
 
 
 @kernel
 def _place(p, q, k, end):
-    """End of contact k: its point (x, y), the tangent there, and the gap [m]."""
+    """End of contact k, as bodies lie in ``q``: its point (x, y) [m], the unit tangent there, and the gap [m].
+
+    The point is a corner of the base where that is over the face below, and otherwise the edge of the face.
+    ``end`` is 0 (left) or 1.
+    """
     x, y = _turned(p.corner[k, end, 0], p.corner[k, end, 1], q[3 * k + 2])
     x, y = x + q[3 * k], y + q[3 * k + 1]
     if k == 0:
         return x, y, 1.0, 0.0, y
+    # edge of the face below, whose body has turned by ``below``
     side, tilt, below = 2 * end - 1, (p.tilt_cos[k], -p.tilt_sin[k]), q[3 * k - 1]
-    ex, ey = p.face[k, 0] + side * p.half[k] * tilt[0], 0.0
+    ex = p.face[k, 0] + side * p.half[k] * tilt[0]
     ey = p.face[k, 1] + side * p.half[k] * tilt[1]
     ex, ey = _turned(ex, ey, below)
     ex, ey = ex + q[3 * k - 3], ey + q[3 * k - 2]
@@ -58,7 +66,7 @@ def _place(p, q, k, end):
 
 @kernel
 def _speed(q, v, k, point, direction):
-    """Velocity of body k relative to what is below at a point (x, y) along a direction [m/s]."""
+    """Velocity of body k relative to what is below it, at a point (x, y) along a unit direction (dx, dy) [m/s]."""
     x, y = point
     dx, dy = direction
     found = dx * (v[3 * k] + v[3 * k + 2] * (y - q[3 * k + 1]))
@@ -104,7 +112,11 @@ def breaks_a_law(p, w, closing, plastic):
 
 @kernel
 def _mass_and_gain(p, w):
-    """Mass of all bodies [kg], and the kinetic energy that an impact has given to them [J]."""
+    """Mass of all bodies [kg], and the kinetic energy that an impact has given to them [J].
+
+    ``w.old_v`` and ``w.v`` are the velocities before and after; ``p.inverse`` has 1/m, 1/m and 1/I of each body,
+    so that body k has places 3 k to 3 k + 2.
+    """
     mass = gain = 0.0
     for k in range(p.count):
         mass += p.mass[k]
@@ -115,7 +127,7 @@ def _mass_and_gain(p, w):
 
 @kernel
 def _momentum_change(p, w, k):
-    """Change of momentum (x, y) of body k in an impact [N s], and of its moment about the origin [N s m]."""
+    """Change of momentum (x, y) of body k in an impact [N s], and of its clockwise moment about 0, 0 [N s m]."""
     jump_x = (w.v[3 * k] - w.old_v[3 * k]) * p.mass[k]
     jump_y = (w.v[3 * k + 1] - w.old_v[3 * k + 1]) * p.mass[k]
     spin = (w.v[3 * k + 2] - w.old_v[3 * k + 2]) * p.inertia[k]
@@ -124,10 +136,9 @@ def _momentum_change(p, w, k):
 
 @kernel
 def _wall_tangent(p, w, k, end):
-    """Point and tangent of end ``end`` of contact k with a wall, from the corners of the body's side.
+    """Point (x, y) [m] and unit tangent of an end of contact k with a wall, from the corners of the body's side.
 
-    Either a corner of the side is on the face of the wall, or the upper edge of the wall on the side. w.q has x, y
-    and the rotation of each body, one after the other.
+    Either a corner of the side is on the face of the wall, or the upper edge of the wall on the side.
     """
     body = p.upper[k]
     x, y = _turned(p.edge[k, end, 0], p.edge[k, end, 1], w.q[3 * body + 2])
@@ -142,7 +153,11 @@ def _wall_tangent(p, w, k, end):
 
 @kernel
 def _given_by_walls(p, w, body):
-    """Impulse (x, y) and moment about the origin that walls have given to a body."""
+    """Impulse (x, y) that walls have given to a body [N s], and its moment about the origin, clockwise [N s m].
+
+    The normal is (-ty, tx). One shear holds both ends of a contact: they lie on one line, so it is put at the
+    first.
+    """
     push_x = push_y = turn = 0.0
     for k in range(p.count, p.contacts):
         if p.upper[k] != body:
@@ -162,7 +177,10 @@ def _given_by_walls(p, w, body):
 
 @kernel
 def _wall_breaks(p, w, k, limits):
-    """Whether what a wall has given breaks a law: it pulls, rubs too much, or lets a corner through."""
+    """Whether contact k with a wall has broken a law: it pulls, rubs too much, or lets a corner through.
+
+    ``limits``: the :class:`Limits` that each may be passed by.
+    """
     pressed = w.hit[k, 0] + w.hit[k, 1]
     broken = min(w.hit[k, 0], w.hit[k, 1]) < -limits.impulse
     broken = broken or abs(w.hit_shear[k]) > p.static[k] * pressed + limits.impulse
@@ -178,7 +196,11 @@ def _wall_breaks(p, w, k, limits):
 
 @kernel
 def _contact_breaks(p, w, k, resultant, limits):
-    """Whether contact k breaks a law by the resultant (x, y, moment about the origin) that it has given."""
+    """Whether contact k breaks law 8 or 9 by what it has given: x, y [N s], moment about the origin [N s m].
+
+    The ``resultant`` is split into a shear and the normal impulses of the ends that touch. Where none does it must
+    vanish; where one does it must pass through that end.
+    """
     push_x, push_y, turn = resultant
     slack, allowed, plastic = limits.speed, limits.impulse, limits.plastic
     x0, y0, tx, ty, gap0 = _place(p, w.q, k, 0)
@@ -201,9 +223,9 @@ def _contact_breaks(p, w, k, resultant, limits):
     least = min(pressed - far, far) if left and right else pressed
     if least < -allowed and (plastic or pressed < -allowed):
         return True
-    if _end_breaks(p, w, k, (x0, y0, -ty, tx), pressed - far, limits):
+    if _end_breaks(w, k, (x0, y0, -ty, tx), pressed - far, limits):
         return True
-    if _end_breaks(p, w, k, (x1, y1, -ty, tx), far, limits):
+    if _end_breaks(w, k, (x1, y1, -ty, tx), far, limits):
         return True
     slid = _speed(w.q, w.old_v, k, (x0, y0), (tx, ty))
     brakes = abs(slid) > slack and slid * along < 0.0
@@ -212,8 +234,11 @@ def _contact_breaks(p, w, k, resultant, limits):
 
 
 @kernel
-def _end_breaks(p, w, k, end, given, limits):
-    """Whether an end (x, y and its normal) comes closer after an impact, or parts although it was pushed."""
+def _end_breaks(w, k, end, given, limits):
+    """Whether an end breaks law 8: it comes closer after an impact, or parts although it was pushed.
+
+    ``end``: x, y [m] and the unit normal of the end of contact k; ``given``: normal impulse at it [N s].
+    """
     x, y, nx, ny = end
     speed = _speed(w.q, w.v, k, (x, y), (nx, ny))
     parts = limits.plastic and given > limits.impulse and speed > limits.speed

@@ -7,7 +7,7 @@ In: :class:`rockfrag.engines.contract.Cases`. Out: :class:`rockfrag.outcomes.Out
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,9 +61,10 @@ def body_record(system: System, linear: bool = False, g: float = GRAVITY) -> np.
 
 
 def afters(system: System) -> tuple[ForKernels, ...]:
-    """Return how ground and interface come off impacts that end on their right and left pivots.
+    """Return by which law, as a number and a value, ground and interface come off impacts.
 
-    Of a lone body, which the interface stands for, all laws are the same.
+    In order: impacts of the ground that end on the right and on the left pivot, then those of the interface. A
+    lone body stands on the interface, so that the ground's laws, here those of momentum, are never asked.
     """
     if system.count == 1:
         law = system.contacts[0].law
@@ -83,37 +84,79 @@ def afters(system: System) -> tuple[ForKernels, ...]:
 
 
 def after_impact(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> ForKernels:
-    """What the kernels get of the impacts of a contact that end on a pivot of the body above it."""
+    """Return the law, as a number and a value, of the impacts of a contact that end on a pivot of the body above.
+
+    ``shape``: of that body; ``pivot``: +1 right, -1 left.
+    """
     return law_named(law.name).tell(shape, law.right if pivot > 0 else law.left, pivot)
 
 
+class Lanes(NamedTuple):
+    """An engine of lanes."""
+
+    name: str  # of the engine
+    kernel: Any  # entry kernel of (ensemble, motions, memory of a thread, outcomes)
+    worker: Callable[[], Any]  # makes the memory of one thread
+
+
 def integrate(
-    kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any
+    lanes: Lanes,
+    threads: int,
+    ensemble: Ensemble,
+    motions: Motions,
+    outcomes: NDArray[np.void],
 ) -> None:
-    """Let threads call an entry kernel, each with memory of its own, until no case is left."""
-    ensemble, *others = arguments
-    with compiling_alone(kernel):
-        kernel(ensemble._replace(count=0), *others[:-1], worker(), others[-1])
+    """Let threads call an entry kernel, each with memory of its own, until no case is left.
+
+    Parameters
+    ----------
+    lanes : the kernel, and what makes its memory
+    threads : number of threads
+    ensemble, motions : the cases, and what they are shaken with
+    outcomes : records ``OUTCOME`` to fill, shape (cases,)
+    """
+    with compiling_alone(lanes.kernel):
+        # no case yet: it is compiled before threads begin
+        lanes.kernel(ensemble._replace(count=0), motions, lanes.worker(), outcomes)
+    # threads take cases by this counter
     ensemble.counter[0] = 0
 
     def work(_: int) -> None:
-        kernel(ensemble, *others[:-1], worker(), others[-1])
+        """Integrate cases on one thread until none is left."""
+        lanes.kernel(ensemble, motions, lanes.worker(), outcomes)
 
     with ThreadPoolExecutor(threads) as pool:
         list(pool.map(work, range(min(threads, int(ensemble.count)))))
 
 
-def sampled(
-    cases: Cases, per_gravity: float
-) -> tuple[Motions, NDArray[np.int64], Floats]:
-    """Sample the motions as densely as systems need; which each uses, its interval [s]; vertical over gravity."""
+class Sampled(NamedTuple):
+    """Motions as lanes take them."""
+
+    motions: Motions
+    rows: NDArray[np.int64]  # which of them each system takes under each motion
+    intervals: Floats  # sampling interval of that [s], shape (systems, motions) as well
+
+
+def sampled(cases: Cases, per_gravity: float) -> Sampled:
+    """Sample all motions end to end, each as densely as the systems need.
+
+    Parameters
+    ----------
+    cases : systems × motions × scales
+    per_gravity : factor on the vertical acceleration
+
+    Returns
+    -------
+    The samples, and which of them each system takes.
+    """
     values = [motion.x.acceleration for motion in cases.motions]
     dts = np.array([motion.dt for motion in cases.motions])
     g, step = cases.request.g, cases.request.step
     times = np.array([step_count(system, dts, g, step) for system in cases.systems])
-    # the next power of two
+    # systems that need as many samples share a motion: the next power of two
     mantissa, exponent = np.frexp(times)
     times = 2 ** (exponent - (mantissa == 0.5))
+    # a kind is a motion sampled so many times as densely
     kinds, number = np.unique(
         times * len(values) + np.arange(len(values)), return_inverse=True
     )
@@ -155,13 +198,19 @@ def sampled(
         offsets,
         lasts=offsets[:-1] + sizes - 1,
     )
-    return motions, number.reshape(times.shape), dts[np.newaxis, :] / times
+    return Sampled(motions, number.reshape(times.shape), dts[np.newaxis, :] / times)
 
 
 def _extremes(
     samples: Floats, offsets: NDArray[np.int64]
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """Extremes of each BLOCK of samples, and from the beginning of each to the end of its motion."""
+    """Highest and lowest sample of each BLOCK, and both from the beginning of each BLOCK to the end of its motion.
+
+    Parameters
+    ----------
+    samples : of all motions end to end, whole blocks each
+    offsets : where each motion begins, shape (motions + 1,)
+    """
     blocks = samples.reshape(-1, BLOCK)
     high, low = blocks.max(axis=1, initial=-np.inf), blocks.min(axis=1, initial=np.inf)
     ahead, behind = high.copy(), low.copy()
@@ -202,7 +251,14 @@ def blocks_of(outcomes: Outcomes) -> Iterator[tuple[NDArray[np.intp], int, str]]
 
 
 def write_rocking(into: Outcomes, found: NDArray[np.void], peaks: str = "peak") -> None:
-    """Write what the kernels tell (OUTCOME, or SUMMARY with ratios as ``peaks``) of cases."""
+    """Write what the kernels tell of cases into outcomes.
+
+    Parameters
+    ----------
+    into : outcomes, shape (systems, motions, scales)
+    found : records ``OUTCOME``, or ``SUMMARY``, of that shape
+    peaks : beginning of the fields with θ/θcritical: ``peak``, or ``ratio`` of a SUMMARY
+    """
     lone = np.array(into.counts)[:, np.newaxis, np.newaxis] == 1
     fell = np.where(found["fallen"] > 0, found["fallen"] - lone, 0)
     into.overturned[:] = fell > 0
@@ -221,10 +277,11 @@ def write_rocking(into: Outcomes, found: NDArray[np.void], peaks: str = "peak") 
 def run_blocks(cases: Cases) -> Outcomes:
     """Return the outcomes of lone bodies."""
     g, made = cases.request.g, sampled(cases, 1.0)
-    _, _, intervals = made
+    intervals = made.intervals
     pivots = np.empty((*intervals.shape, 2), block.PIVOT)
     for i, system in enumerate(cases.systems):
         pivots[i] = _pivots(system, g)
+    # from seconds to samples
     pivots["swing"] *= intervals[:, :, np.newaxis] ** 2
     pivots["per_swing"] /= intervals[:, :, np.newaxis] ** 2
     parts, free = np.ones(intervals.shape), np.zeros(intervals.shape, np.int64)
@@ -234,21 +291,18 @@ def run_blocks(cases: Cases) -> Outcomes:
         "parts": parts,
         "free": free,
     }
-    return _by_lanes(
-        LONE_BLOCKS.name, cases, block.integrate_blocks, block.worker, made, **given
-    )
+    lanes = Lanes(LONE_BLOCKS.name, block.integrate_blocks, block.worker)
+    return _by_lanes(lanes, cases, made, **given)
 
 
 def _pivots(system: System, g: float) -> NDArray[np.void]:
-    """Constants of a lone body's right and left pivot, with p² where p² dt² belongs."""
+    """Constants of a lone body's right and left pivot, records PIVOT, shape (2,), with p² where p² dt² belongs."""
     pivots = np.empty(2, block.PIVOT)
     shape, law = system.shapes[0], system.contacts[0].law
     # of the impact that ends rocking on a pivot and comes down on the other
     for at, pivot, measured in ((0, +1, law.left), (1, -1, law.right)):
-        p, alpha = (
-            geometry.frequency(shape, pivot, g),
-            geometry.critical_angle(shape, pivot),
-        )
+        p = geometry.frequency(shape, pivot, g)
+        alpha = geometry.critical_angle(shape, pivot)
         if not p * p * alpha * alpha > 0:
             raise InputError(
                 "body: lengths, mass and inertia are too far apart; check their units."
@@ -263,13 +317,10 @@ def run_stacks(cases: Cases) -> Outcomes:
     """Return the outcomes of two bodies on each other."""
     g, step = cases.request.g, STACK_STEP * cases.request.step
     made = sampled(cases, 1.0 / g)
-    _, _, intervals = made
-    each = list(zip(cases.systems, intervals, strict=True))
+    each = list(zip(cases.systems, made.intervals, strict=True))
     return _by_lanes(
-        TWO_BLOCKS.name,
+        Lanes(TWO_BLOCKS.name, integrate_stacks, stack_case.worker),
         cases,
-        integrate_stacks,
-        stack_case.worker,
         made,
         bodies=np.array([body_record(system, g=g) for system in cases.systems], BODY),
         factors=cases.scales,
@@ -278,22 +329,32 @@ def run_stacks(cases: Cases) -> Outcomes:
     )
 
 
-def _by_lanes(
-    name: str,
-    cases: Cases,
-    kernel: Any,
-    worker: Callable[[], Any],
-    sampled: Any,
-    **given: Any,
-) -> Outcomes:
-    """Return what lanes make of motions ``sampled`` for an ensemble, and of what its kernel is ``given``."""
-    motions, rows, intervals = sampled
+def _by_lanes(lanes: Lanes, cases: Cases, made: Sampled, **given: Any) -> Outcomes:
+    """Return what lanes make of an ensemble.
+
+    Parameters
+    ----------
+    lanes : kernel and memory, with the name of their engine
+    cases : systems × motions × scales
+    made : their motions as lanes take them
+    given : fields of the :class:`Ensemble` besides those of the sampled motions
+
+    Returns
+    -------
+    The outcomes, shape (systems, motions, scales).
+    """
     count = len(cases.systems) * cases.scales.size
-    ensemble = Ensemble(np.array([0]), count, rows=rows, intervals=intervals, **given)
+    ensemble = Ensemble(
+        counter=np.array([0]),
+        count=count,
+        rows=made.rows,
+        intervals=made.intervals,
+        **given,
+    )
     found = np.empty(count, OUTCOME)
-    integrate(kernel, worker, cases.threads, ensemble, motions, found)
-    outcomes = empty_outcomes(cases.names, cases.scales, (name,))
-    found, interval = found.reshape(cases.shape), intervals[:, :, np.newaxis]
+    integrate(lanes, cases.threads, ensemble, made.motions, found)
+    outcomes = empty_outcomes(cases.names, cases.scales, (lanes.name,))
+    found, interval = found.reshape(cases.shape), made.intervals[:, :, np.newaxis]
     # lanes count time in samples
     write_rocking(outcomes, found)
     outcomes.certain_time[:] = np.where(

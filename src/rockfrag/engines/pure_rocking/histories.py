@@ -7,7 +7,7 @@ In: a :class:`rockfrag.engines.contract.Case`. Out: its :class:`rockfrag.outcome
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -48,7 +48,24 @@ PIVOTS = (+1, -1)  # right and left pivot
 
 Records = NDArray[np.void]
 
-Link = tuple[Floats, ...]
+
+class Link(NamedTuple):
+    """A vector that is fixed in a body, as it lies relative to the ground at n samples, shape (n,) each."""
+
+    x: Floats  # [m], to the right
+    y: Floats  # [m], upwards
+    # acceleration of its tip relative to its foot [m/s²], to the right and upwards
+    ax: Floats
+    ay: Floats
+
+
+class UpperLinks(NamedTuple):
+    """Links to the upper one of two bodies."""
+
+    foot: Link  # from the pivot on the ground to the pivot of the upper body
+    centre: Link  # from there to its centre of gravity
+    # top of the pedestal, from its left to its right end, x and y [m], shape (n,) each
+    top: tuple[Floats, Floats]
 
 
 @dataclass(frozen=True)
@@ -61,16 +78,17 @@ class _Turning:
     omega: Floats  # angular velocity [rad/s], shape (n,)
     alpha: Floats  # angular acceleration [rad/s²], shape (n,)
 
-    def turned(self, arm: Floats) -> Link:
+    def turned(self, arm: Floats) -> tuple[Floats, Floats]:
         """Arm in the body [m], shape (2,) or (n, 2), as it lies relative to the ground: x and y [m], (n,) each."""
         x, y = np.transpose(arm)
         return x * self.cosine + y * self.sine, -x * self.sine + y * self.cosine
 
     def link(self, arm: Floats) -> Link:
-        """The same, and the acceleration of its tip about its foot [m/s²], α × r - ω² r, (n,) each."""
+        """Arm in the body [m], shape (2,) or (n, 2), with the acceleration of its tip, α × r - ω² r."""
         x, y = self.turned(arm)
         inwards = self.omega * self.omega
-        return x, y, self.alpha * y - inwards * x, -self.alpha * x - inwards * y
+        ax, ay = self.alpha * y - inwards * x, -self.alpha * x - inwards * y
+        return Link(x, y, ax, ay)
 
 
 def run(cases: Cases) -> Outcomes:
@@ -88,9 +106,17 @@ def run(cases: Cases) -> Outcomes:
 def summarised(
     cases: Cases, name: str, summary_of: Callable[[Case, np.void, np.void], np.void]
 ) -> Outcomes:
-    """Return the outcomes of cases by an engine of a name, from the SUMMARY of each.
+    """Return the outcomes of cases that are integrated one by one, on several threads.
 
-    ``summary_of`` takes a case, the record of its body and the STATE that it begins with.
+    Parameters
+    ----------
+    cases : systems × motions × scales
+    name : of the engine, for ``Outcomes.engine``
+    summary_of : gives the SUMMARY of a case, the record BODY of its system and the STATE that it begins with
+
+    Returns
+    -------
+    The outcomes, shape (systems, motions, scales).
     """
     records = [
         body_record(system, cases.request.linear, cases.request.g)
@@ -159,27 +185,29 @@ class SingleRun:
         self.time = np.arange(done, dtype=np.float64) * case.motion.dt
 
     def of(self, name: str, rows: Records | None = None) -> NDArray[Any]:
-        """Return a number of each body, from below, in columns, of the samples or of other rows."""
+        """Return the field ``name`` of each body, from below, of the samples or of other rows, (rows, blocks)."""
         rows = self.history if rows is None else rows
         return np.column_stack([rows[name + block] for block in BLOCKS[-self.count :]])
 
     def response(self) -> Response:
         """Return the response that the kernel wrote."""
-        summary, demand, blocks = (
-            self.summary,
-            self.summary["demand"],
-            BLOCKS[-self.count :],
-        )
+        summary = self.summary
+        demand = self.summary["demand"]
+        blocks = BLOCKS[-self.count :]
         theta, state, n = self.of("theta"), self.of("c"), len(self.history)
         fallen = int(summary["fallen"])
         ground, upward = self.ground(n)
-        position, links = self._links(theta, state)
-        normal, friction = self._forces(ground, upward, links)
+        turns = self._turns(theta)
+        # number of each sample's pivots among PIVOTS, shape (n, blocks)
+        number = (state < 0).astype(np.int64)
+        lower = self._lower_link(turns[0], number[:, 0])
+        above = self._upper_links(turns, number) if self.count == 2 else None
+        normal, friction = self._forces(ground, upward, lower, above)
         return Response(
             system=self.system,
             time=self.time,
             ground_acceleration=ground,
-            position=position,
+            position=self._positions(lower, above, number[:, 0]),
             theta=theta,
             omega=self.of("omega"),
             alpha=self.of("alpha"),
@@ -205,7 +233,7 @@ class SingleRun:
         )
 
     def ground(self, count: int) -> tuple[Floats, Floats]:
-        """Acceleration of the ground at the first samples [m/s²], and upwards over gravity, (count,) each."""
+        """Acceleration of the ground at the first samples [m/s²], and upwards over gravity [-], (count,) each."""
         found = np.zeros((2, count))
         for row, samples in zip(
             found, (self.shaking.samples, self.shaking.vertical), strict=True
@@ -213,31 +241,31 @@ class SingleRun:
             row[: samples.size] = self.shaking.scale * samples[:count]
         return found[0], found[1]
 
-    def _links(self, theta: Floats, state: NDArray[Any]) -> tuple[Floats, list[Link]]:
-        """Centres of gravity relative to the ground [m], (n, blocks, 2), and the links between pivots and them.
+    def _lower_link(self, turning: _Turning, number: NDArray[np.int64]) -> Link:
+        """Link from the pivot on the ground to the lower body's centre of gravity; ``number`` of PIVOTS, (n,)."""
+        arms = np.array([geometry.arm(self.system.shapes[0], each) for each in PIVOTS])
+        return turning.link(arms[number])
 
-        Of each link x, y [m] and the acceleration of its tip [m/s²], each (n,): to the lower centre, to the foot
-        of the upper body, from there to its centre, and along the top of the pedestal.
+    def _positions(
+        self, lower: Link, above: UpperLinks | None, number: NDArray[np.int64]
+    ) -> Floats:
+        """Centres of gravity relative to the middle of the ground's face [m], shape (n, blocks, 2).
+
+        ``lower``, ``above`` and ``number``, shape (n,), say where they lie from the pivot on the ground, and which
+        of ``PIVOTS`` that is.
         """
-        turns = self._turns(theta)
-        lower = self.system.shapes[0]
-        # number of each sample's pivots among these, shape (n, blocks)
-        number = (state < 0).astype(np.int64)
-        arms = np.array([geometry.arm(lower, pivot) for pivot in PIVOTS])
-        arm = arms[number[:, 0]]
-        links = [turns[0].link(arm)]
-        centres = [links[0][:2]]
-        if self.count == 2:
-            links += self._upper_links(turns, number)
-            (foot_x, foot_y, *_), (x, y, *_) = links[1:3]
-            centres.append((foot_x + x, foot_y + y))
+        centres = [(lower.x, lower.y)]
+        if above is not None:
+            foot, centre = above.foot, above.centre
+            centres.append((foot.x + centre.x, foot.y + centre.y))
         position = np.stack([np.column_stack(each) for each in centres], axis=1)
-        # from the pivot to the middle of the ground's face
-        position[..., 0] += lower.x - arm[:, :1]
-        return position, links
+        shape = self.system.shapes[0]
+        arm_x = np.array([geometry.arm(shape, pivot)[0] for pivot in PIVOTS])
+        position[..., 0] += shape.x - arm_x[number][:, np.newaxis]
+        return position
 
     def _turns(self, theta: Floats) -> list[_Turning]:
-        """Rotation of each block at the samples, of its rotations [rad], shape (n, blocks)."""
+        """Return how each block turns over the samples; ``theta``: rotations [rad], shape (n, blocks)."""
         sine, cosine = np.empty((2, *theta.shape))
         with compiling_alone(kept.fill_sines):
             # the same on every processor
@@ -250,41 +278,38 @@ class SingleRun:
 
     def _upper_links(
         self, turns: Sequence[_Turning], number: NDArray[np.int64]
-    ) -> list[Link]:
-        """Links to the foot of the upper body, from there to its centre, and along the top of the pedestal.
-
-        ``number`` says of each sample which of ``PIVOTS`` both bodies rock on, shape (n, 2).
-        """
+    ) -> UpperLinks:
+        """Links to the upper body; ``number`` is which of ``PIVOTS`` both bodies rock on, shape (n, 2)."""
         pile = self.system.pile
         feet = np.array([[geometry.reach(pile, a, b) for b in PIVOTS] for a in PIVOTS])
         above = np.array([geometry.upper_arm(pile, pivot) for pivot in PIVOTS])
-        top = np.subtract(pile.right, pile.left)
-        return [
-            turns[0].link(feet[number[:, 0], number[:, 1]]),
-            turns[1].link(above[number[:, 1]]),
-            turns[0].turned(top),
-        ]
+        return UpperLinks(
+            foot=turns[0].link(feet[number[:, 0], number[:, 1]]),
+            centre=turns[1].link(above[number[:, 1]]),
+            top=turns[0].turned(np.subtract(pile.right, pile.left)),
+        )
 
     def _forces(
-        self, ground: Floats, upward: Floats, links: list[Link]
+        self, ground: Floats, upward: Floats, lower: Link, above: UpperLinks | None
     ) -> tuple[Floats, Floats]:
         """Normal and friction force of each interface, across and along the face that carries [N], (n, blocks).
 
-        ``ground`` is the acceleration of the ground [m/s²], ``upward`` its vertical one over gravity, both (n,). A
-        link is x and y of a point as seen from the one below [m], and their accelerations [m/s²].
+        They follow from the absolute accelerations of the centres of gravity, as at the head of the class.
+        ``ground`` is the acceleration of the ground [m/s²], ``upward`` its vertical one over gravity, both (n,).
         """
         still = float(self.record["gravity"])
         gravity = still + still * upward
-        mass, (_, _, ax, ay) = self.system.shapes[0].mass, links[0]
-        normal, friction = mass * (gravity + ay), mass * (ground + ax)
-        if self.count == 1:
+        mass = self.system.shapes[0].mass
+        normal, friction = mass * (gravity + lower.ay), mass * (ground + lower.ax)
+        if above is None:
             return normal[:, np.newaxis], friction[:, np.newaxis]
-        pile, (foot, upper, top) = self.system.pile, links[1:]
-        level = pile.upper.mass * (ground + foot[2] + upper[2])
-        upright = pile.upper.mass * (gravity + foot[3] + upper[3])
-        # of the interface so far upright and level: the pedestal's top turns with it
-        length = hypot(*(float(x) for x in np.subtract(pile.right, pile.left)))
-        tx, ty = top[0] / length, top[1] / length
+        pile, foot, centre = self.system.pile, above.foot, above.centre
+        level = pile.upper.mass * (ground + foot.ax + centre.ax)
+        upright = pile.upper.mass * (gravity + foot.ay + centre.ay)
+        # the interface's force is level and upright so far: the pedestal's top turns with it
+        width, height = np.subtract(pile.right, pile.left)
+        length = hypot(float(width), float(height))
+        tx, ty = above.top[0] / length, above.top[1] / length
         return (
             np.column_stack([normal + upright, tx * upright - ty * level]),
             np.column_stack([friction + level, tx * level + ty * upright]),
@@ -304,7 +329,7 @@ class SingleRun:
         )
 
     def _energies(self) -> pd.DataFrame:
-        """Balance of energy by cause over time [J]."""
+        """Return the table of energies [J] over time: kinetic, potential, work of the ground, losses."""
         kinetic, potential = np.empty((2, len(self.history)))
         with compiling_alone(kept.fill_energies):
             kept.fill_energies(
@@ -329,7 +354,7 @@ class SingleRun:
 
 
 def initial_state(system: System) -> np.void:
-    """Return the STATE that the integration begins with."""
+    """Return the STATE that the integration begins with: the system's start, or rest."""
     initial: np.void = np.zeros(1, STATE)[0]
     if system.start is not None:
         for name, values in (
@@ -341,9 +366,9 @@ def initial_state(system: System) -> np.void:
 
 
 def shaking_of(case: Case, unit: float) -> Any:
-    """Return what a system is shaken with (``kernels.single.Shaking``), in steps that follow from the system.
+    """Return the motion of a case as kernels take it, a ``kernels.single.Shaking``.
 
-    The vertical acceleration is over ``unit`` [m/s²].
+    Steps and the length of free rocking follow from the system; the vertical acceleration is over ``unit`` [m/s²].
     """
     motion, request = case.motion, case.request
     return Shaking(
@@ -365,9 +390,19 @@ def run_integration(
     *,
     memory: np.void | None = None,
 ) -> tuple[int, np.void]:
-    """Integrate one system; return the number of samples done and the summary.
+    """Integrate one system by the kernel of single histories.
 
-    ``memory`` is a SCRATCH that holds the last state afterwards.
+    Parameters
+    ----------
+    record : its BODY
+    shaking : ``kernels.single.Shaking``
+    initial : STATE to begin with
+    history, contact_events : records SAMPLE and CONTACT_EVENT to fill, as far as they reach
+    memory : SCRATCH to work in, which holds the last state afterwards; None for one of its own
+
+    Returns
+    -------
+    Number of samples done, and the SUMMARY.
     """
     summary = np.zeros(1, kept.SUMMARY)[0]
     work = np.zeros(1, SCRATCH)[0] if memory is None else memory

@@ -46,18 +46,18 @@ def history(case: Case) -> Response:
 
 
 class Followed(NamedTuple):
-    """What a case has come to: summary, samples, their instants, contact events and the ground."""
+    """What a case, or a part of it, has come to."""
 
-    summary: np.void
-    samples: Records
-    time: Floats
-    contact_events: Records
-    ground: Floats
-    upward: Floats
+    summary: np.void  # SUMMARY
+    samples: Records  # SAMPLE, shape (n,)
+    time: Floats  # instants of the samples [s], shape (n,)
+    contact_events: Records  # CONTACT_EVENT
+    ground: Floats  # acceleration of the ground at the samples [m/s²], shape (n,)
+    upward: Floats  # likewise upwards, over gravity [-]
 
 
 class SteppedCase:
-    """A case that goes from jump to jump."""
+    """A case of one body that goes from jump to jump; the kernels' records call a lone body the second."""
 
     def __init__(self, case: Case, record: np.void) -> None:
         self.case, self.record = case, record
@@ -65,17 +65,17 @@ class SteppedCase:
         self.work = np.zeros(1, SCRATCH)[0]
 
     def follow(self, start: np.void, *, keeps: bool) -> Followed:
-        """Go through all parts; ``keeps`` samples and contact events."""
+        """Go through all parts of the motion from a STATE; ``keeps``: samples and contact events too."""
         state, whole, work = start, blank_summary(start), 0.0
         parts: list[Followed] = []
         for piece in pieces_of(self.case):
             if piece.jump is not None:
-                state, opening = self._jumped(state, piece, whole)
+                state, event = self._jumped(state, piece, whole)
                 # what the jump adds is work of the base, not a loss of the contact
-                work += float(opening[0]["energy_after"] - opening[0]["energy_before"])
-                opening["energy_before"] = opening["energy_after"]
+                work += float(event[0]["energy_after"] - event[0]["energy_before"])
+                event["energy_before"] = event["energy_after"]
                 whole["contact_events"] += 1
-                parts.append(_jump_part(opening, is_first=not parts))
+                parts.append(_jump_part(event, is_first=not parts))
             found = self._through(piece, state, keeps=keeps)
             found.contact_events["time"] += piece.begin
             found.samples["work"] += work
@@ -90,7 +90,7 @@ class SteppedCase:
         return Followed(whole, *joined)
 
     def _through(self, piece: Piece, state: np.void, *, keeps: bool) -> Followed:
-        """Integrate a part of the motion."""
+        """Integrate a part of the motion from a STATE on; ``keeps`` as of :meth:`follow`."""
         system, request = self.case.system, self.case.request
         steps = step_count(system, piece.dt, request.g, request.step)
         shaking = Shaking(
@@ -122,23 +122,30 @@ class SteppedCase:
     def _jumped(
         self, state: np.void, piece: Piece, summary: np.void
     ) -> tuple[np.void, Records]:
-        """The state after a jump of the base, and its contact event; note what it asked of the contact."""
+        """Return the STATE after the jump that a piece begins with, and its contact event, an array of one.
+
+        Parameters
+        ----------
+        state : STATE before the jump; rotation, rate and pivot are its theta2, omega2 and c2
+        piece : part of the motion after the jump
+        summary : SUMMARY, in which the friction that the jump asks is noted
+        """
         assert piece.jump is not None
         theta, omega = float(state["theta2"]), float(state["omega2"])
         pivot, rate = geometry.jumped(self.shape, theta, omega, piece.jump)
         after = state.copy()
-        after["omega2"], after["c2"] = rate, pivot if rate or theta else 0
+        after["omega2"], after["c2"] = rate, pivot
         if pivot:
             self._ask(pivot, theta, rate - omega, piece, summary)
-        opening = np.zeros(1, kept.CONTACT_EVENT)
-        opening["time"], opening["kind"] = piece.begin, VELOCITY_STEP
-        opening["before"], opening["after"] = state, after
-        opening["energy_before"] = self._energy(int(state["c2"]), omega)
-        opening["energy_after"] = self._energy(pivot, rate)
-        return after, opening
+        event = np.zeros(1, kept.CONTACT_EVENT)
+        event["time"], event["kind"] = piece.begin, VELOCITY_STEP
+        event["before"], event["after"] = state, after
+        event["energy_before"] = self._energy(int(state["c2"]), omega)
+        event["energy_after"] = self._energy(pivot, rate)
+        return after, event
 
     def _energy(self, pivot: int, omega: float) -> float:
-        """Kinetic energy relative to the base [J]."""
+        """Kinetic energy [J] relative to the base, of rocking on a pivot (0: none) at a rate [rad/s]."""
         if not pivot:
             return 0.0
         return 0.5 * geometry.pivot_inertia(self.shape, pivot) * omega**2
@@ -146,7 +153,18 @@ class SteppedCase:
     def _ask(
         self, pivot: int, theta: float, change: float, piece: Piece, summary: np.void
     ) -> None:
-        """Note the friction that a jump asks, and a pull of the pivot, which pure rocking gives."""
+        """Note in a SUMMARY the friction that a jump asks, and a pull of the pivot, which pure rocking gives.
+
+        The impulse over the mass is the change of velocity of the centre of gravity, that of the rate about the
+        pivot and the jump itself.
+
+        Parameters
+        ----------
+        pivot : +1 or -1
+        theta : rotation [rad]
+        change : of the rate [rad/s]
+        piece : part of the motion after the jump
+        """
         assert piece.jump is not None
         x, z = geometry.turned(*geometry.arm(self.shape, pivot), theta)
         along = z * change + piece.jump.right
@@ -164,7 +182,7 @@ _COUNTED = ("impacts", "grazings", "given_way", "contact_events")
 
 
 def blank_summary(start: np.void) -> np.void:
-    """Summary of a history that has not moved yet."""
+    """SUMMARY of a history that begins with a STATE and has not moved yet."""
     found: np.void = np.zeros(1, kept.SUMMARY)[0]
     for name in ("fall_time", "lost_contact"):
         found[name] = math.nan
@@ -175,18 +193,24 @@ def blank_summary(start: np.void) -> np.void:
     return found
 
 
-def _jump_part(opening: Records, *, is_first: bool) -> Followed:
-    """What a jump adds: its contact event and, before everything else, the sample that it begins with."""
+def _jump_part(event: Records, *, is_first: bool) -> Followed:
+    """What a jump adds: its contact ``event`` and, before everything else, the sample that it begins with."""
     sample = np.zeros(1 if is_first else 0, kept.SAMPLE)
     for name in ("theta2", "omega2", "c2"):
-        sample[name] = opening["before"][name][: sample.size]
+        sample[name] = event["before"][name][: sample.size]
     none = np.zeros(sample.size)
-    summary = blank_summary(opening["before"][0])
-    return Followed(summary, sample, none, opening, none, none)
+    return Followed(
+        summary=blank_summary(event["before"][0]),
+        samples=sample,
+        time=none,
+        contact_events=event,
+        ground=none,
+        upward=none,
+    )
 
 
 def add_summary(whole: np.void, part: np.void, begin: float) -> None:
-    """Add the summary of a part that begins at an instant [s] to that of what came before."""
+    """Add the SUMMARY of a part that begins at an instant [s] to that of all that came before."""
     for name in _LARGEST:
         whole[name] = max(whole[name], part[name])
     for name in _COUNTED:

@@ -31,6 +31,7 @@ _WIDTH = 8
 
 
 def _recognise(lines: list[str], name: str) -> bool:
+    """Whether lines are those of such a file, by the words of its header."""
     return any(
         _RATE.match(line) and _SIZE.match(below) for line, below in pairwise(lines[:20])
     )

@@ -7,6 +7,7 @@ any case), then values in rows. The header may be longer and freer in files made
 
 import re
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from rockfrag.records.parsing.format import (
     QUANTITIES,
@@ -53,25 +54,36 @@ _COMPONENT = re.compile(
 )
 
 
-def _size(lines: list[str]) -> tuple[int, str, str, float] | None:
-    """Return the line that has number of points and interval, their words and the seconds of the latter's unit."""
+class _Size(NamedTuple):
+    """How a header states the size of its record."""
+
+    line: int  # number of the line that does
+    # words of the number of points, and of the interval
+    points: str
+    interval: str
+    seconds: float  # in the unit of the interval
+
+
+def _size(lines: list[str]) -> _Size | None:
+    """Return where and how a header states its size; None if it does not."""
     for number, line in enumerate(lines[:_MAX_HEADER]):
         if pair := _TRAILING.match(line) or _LEADING.search(line):
             words = pair["first"], pair["second"]
             count, step = (
                 words[::-1] if pair["names"].upper().startswith("DT") else words
             )
-            return number, count, step, 1.0
+            return _Size(number, count, step, 1.0)
         points, interval = _COUNT.search(line), _STEP.search(line)
         if points and interval:
             seconds = 1e-3 if interval["milliseconds"] else 1.0
-            return number, points["npts"], interval["dt"], seconds
+            return _Size(number, points["npts"], interval["dt"], seconds)
     return None
 
 
 def _recognise(lines: list[str], name: str) -> bool:
+    """Whether lines state their size as such files do, and are named PEER, a quantity, or by an ending."""
     size = _size(lines)
-    header = lines[: size[0] + 1] if size else []
+    header = lines[: size.line + 1] if size else []
     return size is not None and bool(
         re.search(r"\bPEER\b", "\n".join(header), re.I)
         or _quantity_and_unit(header) != ("", "")
@@ -104,20 +116,20 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     found = _size(header)
     if found is None:
         text.fail("no line with NPTS and DT above the data")
-    again = _size(header[found[0] + 1 : found[0] + 2])
-    if again is not None and again[1:] != found[1:]:
+    again = _size(header[found.line + 1 : found.line + 2])
+    if again is not None and again._replace(line=0) != found._replace(line=0):
         text.fail(
             "count and interval stand in this line and the one above, and differ",
-            found[0] + 1,
+            found.line + 1,
         )
-    size, words, step, factor = found
-    size += again is not None
-    header = header[: size + 1]
-    points, dt = number_in(words), number_in(step)
+    # number of the line below which the samples begin
+    last = found.line + (again is not None)
+    header = header[: last + 1]
+    points, dt = number_in(found.points), number_in(found.interval)
     if points % 1 or not 1 <= points < 1e12:
-        text.fail(f"NPTS must be a whole number of samples, not {words}", size)
+        text.fail(f"NPTS must be a whole number of samples, not {found.points}", last)
     npts = int(points)
-    dt = text.interval(dt * factor if factor != 1 else dt, size)
+    dt = text.interval(dt * found.seconds if found.seconds != 1 else dt, last)
     quantity, unit = _quantity_and_unit(header)
     for number, line in enumerate(header):
         if problem := factor_beside_unit(line):
@@ -126,7 +138,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     if quantity not in ("", "acceleration"):
         held = f"{quantity} history" + (f" in {unit}" if unit else "")
         text.refuse(f"this is a {held}, not acceleration; give the record's .AT2 file")
-    start, stop = size + 1, last_row(text, size + 1)
+    start, stop = last + 1, last_row(text, last + 1)
     # PEER's columns, where neighbours may touch
     widths = (None, _WIDTH) if len(text.raw(start).rstrip()) == 5 * _WIDTH else ()
     values = text.numbers(start, stop, *widths, count=npts)

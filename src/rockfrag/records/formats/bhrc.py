@@ -55,7 +55,10 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
 
 
 def _step(text: TextFile, at_reals: int, count: int, duration: float) -> float:
-    """Return the interval [s] of the rate, checked against the duration."""
+    """Return the interval [s] of the rate that the header states, checked against its duration [s].
+
+    ``at_reals``: line of the real numbers; ``count``: of samples.
+    """
     fields = text.line(at_reals + 1)[:_WIDTH]
     problem = f"{fields.strip()[:20]!r} stands where the sampling rate is expected"
     rate = text.number(fields, problem, at_reals + 1)

@@ -98,7 +98,10 @@ def _peak(words: list[str]) -> StatedPeak:
 
 
 def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
-    """Return the line above the samples, the interval [s], and what the header says of the channel."""
+    """Read the header of a channel, whose line of words is ``first``.
+
+    Returned are the line above the samples, the interval [s], and what the header says of the channel.
+    """
     at_integers, whole = _block(text, first, "integer", text.integers, 8)
     at_reals, numbers = _block(text, at_integers, "real", text.reals, 15)
     at_samples = _above_samples(text, at_reals)
@@ -120,6 +123,7 @@ def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
         name: None if numbers[i] == unknown else numbers[i]
         for i, name in enumerate(_PLACE)
     }
+    # year, day of the year, month, day, hour, minute
     year, _, month, day, hour, minute = whole[_RECORD_TIME : _RECORD_TIME + 6]
     if unknown not in (year, month, day, hour, minute) and year > 0:
         second = 0.0 if numbers[_SECOND] == unknown else numbers[_SECOND]
@@ -145,7 +149,19 @@ def _above_samples(text: TextFile, at_reals: int) -> int:
 def _block(
     text: TextFile, first: int, kind: str, read: Callable[..., list[Number]], width: int
 ) -> tuple[int, list[Number]]:
-    """Return the line above a header block below line ``first``, and its values."""
+    """Read a block of whole or real numbers, the first below line ``first``.
+
+    Parameters
+    ----------
+    text, first : the file, and the line to look from
+    kind : ``integer`` or ``real``
+    read : reads the numbers of some lines
+    width : of a field where the block does not state it [characters]
+
+    Returns
+    -------
+    The line that states the block, and its values.
+    """
     pattern = re.compile(_BLOCK.format(kind), re.I)
     line = text.find(pattern, first)
     match = pattern.match(text.raw(max(line, 0)))
@@ -159,7 +175,7 @@ def _block(
 
 
 def _section(text: TextFile, line: int, stop: int, dt: float) -> form.Channel:
-    """A channel of a file, from the line that states its unit."""
+    """A channel of a file, from the line that states its unit up to the line ``stop``; ``dt``: interval [s]."""
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("the line above the samples does not state their unit", line)

@@ -33,7 +33,7 @@ _SAMPLE_TIME = "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"
 
 
 def _header(lines: list[str]) -> tuple[dict[str, str], int]:
-    """Return the keys and the number of lines above the samples."""
+    """Return what the keys of the header state, and the number of lines above the samples."""
     keys = [
         (number, match)
         for number, line in enumerate(lines)

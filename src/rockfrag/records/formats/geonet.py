@@ -19,6 +19,7 @@ _TEXT_LINES, _INTEGER_LINES, _REAL_LINES, _A_LINE, _WIDTH = 16, 4, 6, 10, 8
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
+    """Yield the components of a file, one after the other; blank lines may part them."""
     line = 0
     while line < len(text):
         if text.line(line).strip():
@@ -40,8 +41,9 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
         text.fail("the header has 26 lines; the file is cut short", len(text) - 1)
     whole = text.integers(at_integers, at_reals, _WIDTH, 40)
     numbers = text.reals(at_reals, start, _WIDTH, 60)
-    # places in the headers, counted from zero
-    counts, digitised_dt, dt = whole[33:36], *numbers[24:26]
+    # places in the headers, counted from zero: numbers of samples of acceleration, velocity and displacement
+    counts = whole[33:36]
+    digitised_dt, dt = numbers[24:26]
     if counts[0] == 0:
         # V1A has the digitised samples only
         counts[0], dt = whole[30], dt or digitised_dt
@@ -67,12 +69,18 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
 def _facts(
     words: list[str], whole: list[int], numbers: list[float]
 ) -> dict[str, object]:
-    """What the lines of text, the whole numbers and the real numbers of a header say beside the samples."""
-    (year, month), (day, hour), (minute, milliseconds) = (
-        whole[8:10],
-        whole[18:20],
-        whole[38:40],
-    )
+    """What a header says beside the samples.
+
+    Parameters
+    ----------
+    words : its lines of text
+    whole, numbers : its integers and its reals, shape (40,) and (60,)
+    """
+    # their places, counted from zero, are those of the format
+    year, month = whole[8:10]
+    day, hour = whole[18:20]
+    minute, milliseconds = whole[38:40]
+    latitude, longitude, magnitude = numbers[10], numbers[11], numbers[14]
     seconds, clock = milliseconds / 1000, {"day": day, "hour": hour, "minute": minute}
     return {
         "start_time": time_at(seconds, year=year, month=month, **clock)
@@ -83,9 +91,10 @@ def _facts(
         "component": stated(r"\bcomponent\s+(\S+)", words),
         "station_name": words[2].strip(),
         "earthquake": ", ".join(" ".join(line.split()) for line in words[6:8]),
-        "magnitude": numbers[14] or None,
-        "latitude": -abs(numbers[10]),
-        "longitude": numbers[11],
+        "magnitude": magnitude or None,
+        # degrees south
+        "latitude": -abs(latitude),
+        "longitude": longitude,
     }
 
 

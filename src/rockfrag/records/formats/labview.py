@@ -92,12 +92,20 @@ def _parse(text: TextFile) -> list[Channel]:
         text.fail(f"{len(titles)} titles of {width} columns", start - 1)
     clock = f"{_first(general, 'Date')} {_first(general, 'Time')}".strip()
     rows = _rows(text, start, mark, width)
-    measurement = _Measurement(text, start, header, titles, rows, times, clock)
+    measurement = _Measurement(
+        text=text,
+        start=start,
+        header=header,
+        titles=titles,
+        rows=rows,
+        times=times,
+        clock=clock,
+    )
     return [measurement.channel(number) for number in range(int(count))]
 
 
 def _cells(text: TextFile, start: int, stop: int, mark: str) -> dict[str, list[str]]:
-    """Return the cells behind each key of a header."""
+    """Return the cells behind each key of the lines from ``start`` to ``stop``, parted by a ``mark``."""
     lines = (line.split(mark) for line in text.lines(start, stop))
     return {key.strip(): [cell.strip() for cell in cells] for key, *cells in lines}
 
@@ -108,7 +116,10 @@ def _first(header: dict[str, list[str]], key: str) -> str:
 
 
 def _rows(text: TextFile, start: int, mark: str, width: int) -> NDArray[np.float64]:
-    """Return the numbers below the titles, shape (n, width), without the comments behind them."""
+    """Return the numbers below the titles, shape (n, width), without the comments behind them.
+
+    ``start``: first line of numbers; ``mark``: between cells.
+    """
     lines = [text.raw(number).split(mark) for number in range(start, len(text))]
     while lines and not any(cell.strip() for cell in lines[-1]):
         lines.pop()

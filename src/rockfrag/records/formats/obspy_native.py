@@ -104,7 +104,7 @@ def _channel_of(parts: list[Trace], name: str, path: Path, cut_short: bool) -> C
 
 
 def _fault_between(parts: list[Trace]) -> str:
-    """Return what keeps parts of a channel from being one series: the first gap or overlap."""
+    """Return in words what keeps parts of a channel from being one series: the first gap or overlap."""
     rates = {float(trace.stats.sampling_rate) for trace in parts}
     name = f"channel {parts[0].id}"
     if len(rates) > 1:
@@ -209,7 +209,17 @@ def _check_whole_records(plain: Path, path: Path, cut_short: bool) -> None:
 def _scaled(
     trace: Trace, format_name: str, path: Path
 ) -> tuple[NDArray[np.float64], str, list[dict[str, Any]]]:
-    """Samples of a trace, their unit, and the step that gave it; counts, without a unit, where nothing says it."""
+    """Samples of a trace, their unit, and the steps that gave it.
+
+    Parameters
+    ----------
+    trace, format_name : of ObsPy
+    path : of the file, beside which StationXML may lie
+
+    Returns
+    -------
+    Samples, and ``m/s2`` with the step; counts without a unit or a step where nothing says it.
+    """
     counts = np.asarray(trace.data, dtype=np.float64)
     if format_name in _SCALED_FORMATS:
         factor = float(trace.stats.calib)
@@ -230,7 +240,14 @@ def _scaled(
 
 
 def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Channel:
-    """A channel of a trace, its samples in the unit that the file states."""
+    """A channel of a trace, its samples in the unit that the file states.
+
+    Parameters
+    ----------
+    trace, format_name : as ObsPy has read it, and what it calls the format
+    path : of the file
+    cut_short : whether a file that ends early is wanted
+    """
     stats = trace.stats
     if np.ma.is_masked(trace.data):
         raise InputError(f"{path}: channel {trace.id} has gaps or no samples.")
@@ -267,7 +284,11 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
 def _shortness(
     trace: Trace, format_name: str, path: Path, cut_short: bool
 ) -> list[dict[str, Any]]:
-    """Check K-NET's duration against its samples; return the note of a shorter file that is wanted."""
+    """Check K-NET's duration against its samples; return the note of a shorter file that is wanted.
+
+    Parameters are those of :func:`_channel`; the note, a step of the provenance, is alone in the list, which is
+    empty where nothing is missing.
+    """
     duration = (
         trace.stats.get("knet", {}).get("duration") if format_name == "KNET" else None
     )
@@ -294,22 +315,24 @@ def _inventory(path: str, changed: int, size: int) -> Inventory:
 
 
 def _inventory_for(trace: Trace, path: Path) -> tuple[Response, str] | None:
-    """Return the response in the StationXML beside a record that has its channel, and its name."""
+    """Return the response in the StationXML beside a record that has its channel, and the name of that file."""
     for candidate in sorted(path.parent.glob("*.xml")):
         state = candidate.stat()
         # another kind of file, a broken one, or ObsPy's bare Exception for "no matching response"
         with suppress(Exception):
             inventory = _inventory(str(candidate), state.st_mtime_ns, state.st_size)
-            return inventory.get_response(
-                trace.id, trace.stats.starttime
-            ), candidate.name
+            response = inventory.get_response(trace.id, trace.stats.starttime)
+            return response, candidate.name
     return None
 
 
 def _physical(
     trace: Trace, response: Response, path: Path
 ) -> tuple[NDArray[np.float64], dict[str, Any]]:
-    """Return acceleration [m/s²] and the step that made it of counts."""
+    """Return acceleration [m/s²] of a trace of counts, and the step that made it.
+
+    The response is taken off by its stages; without stages counts are divided by its sensitivity.
+    """
     if response.response_stages:
         physical = trace.copy()
         physical.stats.response = response

@@ -27,6 +27,7 @@ _OPTION = r"-{name}\s+(?:\{{(?P<list>[^{{}}]*)\}}|\"(?P<quoted>[^\"]*)\"|(?P<wor
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
+    """Yield the Path time series of a script, in the unit that a comment states."""
     unit = _UNIT.search(text.data)
     stated = (
         canonical_unit(unit["unit"].decode("ascii", errors="replace")) if unit else ""
@@ -39,7 +40,15 @@ def _parse(text: TextFile) -> Iterator[Channel]:
 def _series(
     text: TextFile, line: int, stop: int, unit: str, promised: int | None
 ) -> Channel:
-    """The channel of a Path time series of a script."""
+    """The channel of a Path time series of a script.
+
+    Parameters
+    ----------
+    text : the script
+    line, stop : where the series begins, and the next one
+    unit : that a comment states, empty without one
+    promised : number of samples that it states
+    """
     script = _command(text, line, stop)
     tag = re.search(r"Path[\"']?\s+(\w+)", script, re.I)
     step = _number(text, line, script, "dt")
@@ -110,7 +119,7 @@ def _option(script: str, name: str) -> str | None:
 
 
 def _number(text: TextFile, line: int, script: str, name: str) -> float | None:
-    """The number behind an option of a script, None if it is not there."""
+    """The number behind an option of a script, None if it is not there; ``line``: of messages."""
     words = _option(script, name)
     if words is None:
         return None
@@ -123,6 +132,7 @@ FORMAT = Format("OPENSEES", headed(None, _SERIES, within=200), _parse)
 
 
 def _text(trace: Written) -> str:
+    """Text of a script with one Path time series."""
     header = [
         f"# acceleration in {trace.unit}, {len(trace.samples)} samples",
         f"timeSeries Path 1 -dt {trace.dt} -values {{",

@@ -101,10 +101,8 @@ class _Layout:
                     f"{own:g} {what} here, but {stated:g} in the words of the header; mend it",
                     line,
                 )
-        self.npts, self.dt = (
-            (self.npts if npts is None else npts),
-            (self.dt if dt is None else dt),
-        )
+        self.npts = self.npts if npts is None else npts
+        self.dt = self.dt if dt is None else dt
 
     def _check_duration(self, length: float, step: float) -> None:
         """Refuse samples that are not as long [s] as the words of the header say, but for its rounding."""
@@ -287,12 +285,13 @@ def _layout(text: TextFile, rows: PlainRows) -> _Layout:
 
 
 def _take_numbers_above(layout: _Layout, lines: list[str]) -> None:
-    """Take the count and the interval that rows of numbers above the samples state.
+    """Take the count and the interval that rows of numbers above the samples state into the layout.
 
-    They are the first two numbers there, or the only one. A first row of samples that cannot be one, as
-    it begins with a count and its time does not come before the next, is such a row too.
+    They are the first two numbers there, or the only one. A first row of samples that cannot be one, as it begins
+    with a count and its time does not come before the next, is such a row too. ``lines``: of the file.
     """
     table = layout.table
+    # numbers above the samples, each with that of its line
     above = [(number, word) for number, row in table.numbers for word in row]
     if not above and table.columns > 1:
         row = number_fields.numbers_of(lines[table.start], table.decimal_comma)
@@ -337,7 +336,10 @@ def _check_first_row(layout: _Layout, row: list[str], below: list[str]) -> None:
 
 
 def _is_count_row(row: list[str], below: list[str], columns: int) -> bool:
-    """Tell a count and an interval from the first row of samples of several columns."""
+    """Tell a count and an interval from the first row of samples of several ``columns``.
+
+    ``row``: its words; ``below``: those of the next row.
+    """
     npts, dt = _count_and_step(row[:2])
     if (
         npts is None
@@ -368,11 +370,13 @@ def _count_and_step(words: list[str]) -> tuple[int | None, float | None]:
 
 
 def _is_count(word: str) -> bool:
+    """Whether a word is a whole number of two or more, which may be written with decimals."""
     value = number_fields.number_in(word)
     return value >= 2 and value == int(value) and (_is_whole(word) or value < 1e9)
 
 
 def _is_whole(word: str) -> bool:
+    """Whether a word is written as a whole number."""
     return re.fullmatch(r"[+-]?\d+\.?", word) is not None
 
 
@@ -417,7 +421,8 @@ def _are_channels(
 def _smoother_directions(rows: NDArray[np.float64]) -> tuple[bool, bool]:
     """Whether samples change clearly less from row to row than along a row, and the other way round.
 
-    Those of one channel differ less from one to the next than those of two channels do.
+    Those of one channel differ less from one to the next than those of two channels do. ``rows``: shape (n,
+    columns).
     """
     down = float(np.median(np.abs(np.diff(rows, axis=0))))
     along = float(np.median(np.abs(np.diff(rows, axis=1))))
@@ -490,21 +495,33 @@ class _Leading(NamedTuple):
 def _leading(
     layout: _Layout, values: NDArray[np.float64], words: list[str]
 ) -> _Leading:
-    """Find out what the first two numbers of a column are, by their size and notation; ``words`` as they stand."""
+    """Find out what the first two numbers of a column are, by their size and notation.
+
+    A count is that of the numbers below it; an interval is one that recorders have, rounder than samples; and
+    either is written otherwise than all samples.
+
+    Parameters
+    ----------
+    layout : of the file
+    values : all numbers of the column, shape (n,)
+    words : the same as they are written, the first of them
+    """
     text, dt = layout.text, layout.text.asked_dt
     first, body = words[:2], words[2:]
     are_two = len(first) == 2
     whole = [_is_whole(word) for word in first]
     notations = {_notation(sample) for sample in body}
     odd = [_notation(word) not in notations for word in first]
-    # numbers of as many digits as each needs have every notation
+    # numbers of as many digits as each needs have every notation, so that no one is odd
     unlike = odd[0] and len(notations) == 1
     is_round = _is_interval(words[0], unlike, body)
     count, step = _count_and_step(first) if are_two else (None, None)
+    # a count of what follows, with an interval or alone
     if count == values.size - 2 and step is not None:
         return _Leading(2, count, step)
     if _is_count(words[0]) and values[0] == values.size - 1:
         return _Leading(1, int(values[0]))
+    # a count of something else, by its notation
     if whole[0] and odd[0] and values[0] >= 1:
         count = int(values[0]) if values[0] > 1 else None
         if are_two and _is_interval(first[1], odd[1], body):
@@ -518,6 +535,7 @@ def _leading(
             f"interval, else write 'dt = {dt:g} s' above it and leave dt= out",
             layout.line,
         )
+    # an interval, alone or before a count
     if is_round and (unlike or values[0] == dt):
         if are_two and whole[1] and odd[1] and values[1] > 1:
             return _Leading(2, int(values[1]), float(values[0]))
@@ -536,7 +554,10 @@ def _fail_no_sample(layout: _Layout, word: str) -> NoReturn:
 
 
 def _is_interval(word: str, odd: bool, body: list[str]) -> bool:
-    """Tell whether a number is an interval that recorders have, rounder than the samples below it."""
+    """Tell whether a number is an interval that recorders have, rounder than the samples below it.
+
+    ``word``: the number; ``odd``: whether it is written otherwise than all of the ``body`` below.
+    """
     value = number_fields.number_in(word)
     if _is_whole(word) or not SHORTEST_STEP <= value <= _LONGEST_BARE_STEP:
         return False
@@ -615,7 +636,14 @@ def _without_magnitude(
     table: NDArray[np.float64],
     chosen: list[int],
 ) -> list[int]:
-    """Return the columns that are components: the length of their vector, never negative, is none."""
+    """Return the columns that are components: the length of their vector, never negative, is none.
+
+    Parameters
+    ----------
+    layout, columns : of the file, and what titles say of its columns
+    table : the numbers, shape (n, columns)
+    chosen : columns of acceleration, by their numbers
+    """
     positive = [i for i in chosen if table[:, i].min() >= 0 and table[:, i].max() > 0]
     sizes = [i for i in chosen if columns[i].is_named_magnitude]
     named = [i for i in sizes if i in positive]
@@ -641,7 +669,10 @@ def _without_magnitude(
 
 
 def _off_magnitude(table: NDArray[np.float64], column: int, others: list[int]) -> float:
-    """Return by what part of its peak a column is off the length of the vector of two or three others."""
+    """Return by what part of its peak a column is off the length of the vector of two or three others [-].
+
+    ``table``: of one unit, shape (n, columns); ``others``: numbers of the columns to try.
+    """
     peak = table[:, column].max()
     few = others if len(others) <= _MOST_COMPONENTS else []
     vectors = [pair for k in (2, 3) for pair in combinations(few, k)]
@@ -676,7 +707,10 @@ def _untitled(layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
 def _interval(
     layout: _Layout, columns: list[Column], table: NDArray[np.float64], column: int
 ) -> tuple[float, tuple[dict[str, Any], ...]]:
-    """Return the interval [s] of a column: that of the times left of it, which what is stated must fit."""
+    """Return the interval [s] of a column, and notes: that of the times left of it, which what is stated must fit.
+
+    ``columns``: what titles say; ``table``: the numbers, shape (n, columns); ``column``: its number.
+    """
     text = layout.text
     timed = [i for i, column in enumerate(columns) if column.quantity == "time"]
     left = [i for i in timed if i < column] or timed[:1]
@@ -755,6 +789,7 @@ FORMAT = Format("PLAINTEXT", _recognise, _parse, encoding="latin-1")
 
 
 def _csv(trace: Written) -> str:
+    """Text of a CSV file with time [s] and acceleration, a row a sample."""
     unit = f" [{trace.unit}]" if trace.unit else ""
     rows = [f"{time},{value}" for time, value in trace.timed()]
     return "\n".join([f"Time [s],Acceleration{unit}", *rows, ""])

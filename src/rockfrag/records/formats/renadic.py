@@ -21,6 +21,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     for first, stop in text.parts(_FIRST, CHANNEL_END):
         values = read_pairs(text, first, stop)
         header = text.lines(first, first + _HEADER)
+        # line 2 has the number of the record, line 3 the earthquake
         number = header[1].strip()
         facts = {
             "start_time": american_time(stated(r"TRIGGER\s+TIME\s*:(.*)$", header)),

@@ -25,6 +25,7 @@ def _titles(lines: list[str]) -> list[tuple[int, re.Match[str]]]:
 
 
 def _recognise(lines: list[str], name: str) -> bool:
+    """Whether lines are those of such a file, by the words of its header."""
     # the titles of the columns alone are a plain two-column file
     return any(
         _KEYS.match(line) for number, _ in _titles(lines)[:1] for line in lines[:number]

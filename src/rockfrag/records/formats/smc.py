@@ -6,6 +6,7 @@ fields are 8(1PE10.4E1), which need no blank between them, or 5E14.7 where the 4
 Where the header has no sampling rate, the values are pairs of time [s] and acceleration.
 """
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import replace
@@ -39,6 +40,7 @@ _MISSING_REAL, _RATE, _LATITUDE, _LONGITUDE = 0, 1, 10, 11
 
 
 def _recognise(lines: list[str], name: str) -> bool:
+    """Whether lines are those of such a file, by the words of its first lines."""
     if len(lines) < _FIRST_DATA or not _KINDS.match(lines[0]):
         return False
     whole = lines[_TEXT_LINES : _TEXT_LINES + _INTEGER_LINES]
@@ -92,6 +94,7 @@ def _facts(words: list[str], whole: list[int], numbers: list[float]) -> dict[str
     # a fifth character of the code names the channel
     number = "" if whole[_STATION] == whole[_MISSING] else str(whole[_STATION])
     station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.I)
+    # line 3 begins with the code of the station, line 4 is of the earthquake, line 6 of the station
     return {
         "start_time": _start(whole),
         "station": words[2][:4].strip().strip("\x00*") or number,
@@ -111,16 +114,22 @@ def _without_surplus_lines(
 ) -> tuple[NDArray[np.float64], int]:
     """Return the values that the header counts, and how many stand below the last of them.
 
-    Old digitised records have a line or two of scattered points at the end that their header does not
-    count; a count that ends within a line is a wrong one.
+    Old digitised records have a line or two of scattered points at the end that their header does not count; a
+    count that ends within a line is a wrong one, which the reading of so many numbers refuses.
+
+    Parameters
+    ----------
+    text, start : the file, and its first line of values
+    count : of values by the header
+    width : of a field [characters]
     """
     values = text.numbers(start, None, width)
     surplus = values.size - count
-    widths = (len(text.raw(line).rstrip()) for line in range(start, len(text)))
-    ends = accumulate(-(-each // width) for each in widths)
-    if 0 < surplus <= _SURPLUS_LINES * _PER_LINE and count in takewhile(
-        lambda n: n <= count, ends
-    ):
+    lengths = (len(text.raw(line).rstrip()) for line in range(start, len(text)))
+    # numbers of values up to the end of each line
+    values_to_line_end = accumulate(math.ceil(length / width) for length in lengths)
+    ends_with_a_line = count in takewhile(lambda n: n <= count, values_to_line_end)
+    if 0 < surplus <= _SURPLUS_LINES * _PER_LINE and ends_with_a_line:
         return values[:count], surplus
     return text.numbers(start, None, width, count=count), 0
 

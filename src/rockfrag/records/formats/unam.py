@@ -27,7 +27,10 @@ _HALF_A_DAY = 12 * 3600
 def _interval_and_count(
     text: TextFile, facts: dict[str, str], channels: int
 ) -> tuple[float, int]:
-    """Return interval [s] and number of samples, which the header states once for each channel."""
+    """Return interval [s] and number of samples, which the header states once for each channel.
+
+    ``facts``: what the keys of the header state; ``channels``: their number.
+    """
     intervals = _list(facts, "intervalo de muestreo")
     counts = _list(facts, "num. total de muestras")
     if len(set(intervals)) != 1 or not len(intervals) == len(counts) == channels:

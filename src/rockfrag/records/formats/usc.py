@@ -17,6 +17,7 @@ _LENGTH = slice(72, 76)
 
 
 def _recognise(lines: list[str], name: str) -> bool:
+    """Whether the first line says so, and the lines of the header state how long they are."""
     return (
         len(lines) > _HEADER
         and bool(_FIRST.search(lines[0]))
@@ -25,6 +26,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
+    """Yield the channels of a file, one after the other."""
     for first, stop in text.parts(_FIRST):
         pairs = read_pairs(text, first, min(stop, text.until(CHANNEL_END, first)))
         yield place_of(text.lines(first, first + _HEADER), pairs)

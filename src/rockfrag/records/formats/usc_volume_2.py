@@ -43,6 +43,7 @@ _WIDTH = 10
 
 
 def _recognise(lines: list[str], name: str) -> bool:
+    """Whether lines are those of such a file, by the words of its header."""
     first = _FIRST.match(lines[0])
     return first is not None and bool(
         first["code"] or any(_SECOND.search(line) for line in lines[1:_SECOND_LINES])
@@ -93,12 +94,13 @@ def _unit(words: str) -> str:
 def _check_peak(
     text: TextFile, words: list[str], samples: NDArray[np.float64], line: int
 ) -> None:
-    """Check the largest value against the peak that the header states, in the same unit."""
+    """Check the largest of samples against the peak that the header states, in the same unit.
+
+    ``words``: the header; ``line``: of the file, that a message names.
+    """
     peak = form.first_match(_PEAK, words)
-    stated, found = (
-        abs(float(peak["value"])) if peak else 0.0,
-        float(np.abs(samples).max()),
-    )
+    stated = abs(float(peak["value"])) if peak else 0.0
+    found = float(np.abs(samples).max())
     if stated and not text.cut_short and abs(found - stated) > _AS_STATED * stated:
         text.fail(
             f"the largest value is {found:g}, but the header states a peak of {stated:g}; mend the header or "
@@ -108,7 +110,7 @@ def _check_peak(
 
 
 def _section(text: TextFile, line: int, stop: int, words: list[str]) -> form.Channel:
-    """A channel of a file, from the line that states its samples."""
+    """A channel of a file, from the line that states its samples to the line ``stop``; ``words``: the header."""
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("number of samples, interval or quantity cannot be read here", line)

@@ -225,7 +225,11 @@ def _splits(
 
 
 def _columns(titles: list[str], units: list[str]) -> list[Column]:
-    """Columns of titles and of the units below them."""
+    """Columns of titles and of the units below them.
+
+    A letter that may be a quantity or a direction (v, u, d …) is a direction of acceleration where another title
+    is one: beside N and E a V is the vertical, beside a it is the velocity.
+    """
     columns = [
         _column(title, unit, first=number == 0)
         for number, (title, unit) in enumerate(zip(titles, units, strict=True))
@@ -236,9 +240,8 @@ def _columns(titles: list[str], units: list[str]) -> list[Column]:
         and (is_direction(c.title) or _has_direction_beside_word(c))
         for c in others
     )
-    # beside N and E a V is the vertical, beside a it is the velocity
     columns = [
-        Column(c.title, "acceleration", "", c.title)
+        Column(title=c.title, quantity="acceleration", unit="", component=c.title)
         if directed and c.title.lower() in _AMBIGUOUS and not c.unit
         else c
         for c in columns
@@ -318,7 +321,11 @@ def _column(title: str, unit_below: str, first: bool) -> Column:
 
 
 def _taken_apart(title: str, unit_below: str) -> _Title:
-    """Return the words and the unit of a title, and what in it is neither."""
+    """Return the words and the unit of a title, and what in it is neither.
+
+    ``unit_below``: cell of a line of units under the title. Brackets hold a unit, a name or something unknown; a
+    unit may also end the words.
+    """
     title = re.sub(r"\^\{([+-]?\d)\}", r"^\1", title)
     words, unit, problem = title, Unit(""), ""
     for bracketed in _BRACKETED.finditer(title):

@@ -318,7 +318,16 @@ def section(
     width: int | None,
     quantity: str,
 ) -> Channel:
-    """Return the ``count`` values in the lines below ``line``, which states them, up to ``stop``."""
+    """Return the channel of the values in the lines below the one that states them.
+
+    Parameters
+    ----------
+    text : the file
+    line, stop : the line that states them, and the one behind their last
+    count, dt : number of values, and interval [s]
+    unit, quantity : of the values
+    width : of a field [characters]; None where blanks part them
+    """
     dt = text.interval(dt, line)
     samples = text.numbers(line + 1, stop, width, count=count)
     return Channel(count, dt, samples, unit, quantity)

@@ -171,7 +171,11 @@ def _first_run(lines: list[str], rows: dict[int, list[str]]) -> int | None:
 
 
 def first_odd_row(lines: list[str]) -> int | None:
-    """Return the first line (from zero) that keeps mostly numeric text from being plain text."""
+    """Return the number of the first row, from zero, that keeps a file of samples from being read.
+
+    A row is odd if it has more or fewer numbers than the first row of samples, or words. Returned is None where
+    there are no samples, no odd row, or as many odd rows as others, so that the file is of another kind.
+    """
     table = number_table(lines)
     if table is None:
         return None
@@ -214,9 +218,20 @@ def numbers_of(line: str, decimal_comma: bool = False) -> list[str]:
 def has_decimal_commas(lines: list[str]) -> bool:
     """Tell whether the commas of rows without semicolons can only be decimal signs.
 
-    So they are where blanks separate numbers that all have one, where a number such as ``0,012`` would begin with
-    a zero if the comma separated, and where what stands behind all of many commas has no sign, or an exponent and
-    no decimals: such numbers are no samples.
+    Every word with a comma must be one number with a decimal comma, and no word may have a point or a semicolon.
+    Then the commas can only be decimal signs if one of these holds:
+
+    - blanks separate the numbers of every row already, as in ``1 2,5``;
+    - rows are so many (``_MANY_ROWS``) that of samples some would have a sign, and none stands behind a comma;
+    - what stands behind a comma begins with a zero (``0,012``), or has an exponent and no decimals (``1,25E-3``).
+
+    Parameters
+    ----------
+    lines : of a text file; those that are no rows of numbers, or have no comma, do not count
+
+    Returns
+    -------
+    Whether they are; False where a comma may separate, or there is none.
     """
     rows = [
         line.split() for line in lines if "," in line and are_numbers(numbers_of(line))
@@ -226,9 +241,9 @@ def has_decimal_commas(lines: list[str]) -> bool:
     with_comma = [word for row in rows for word in row if "," in word]
     if not all(_WITH_DECIMAL_COMMA.match(word) for word in with_comma):
         return False
-    several = all(len(row) > 1 for row in rows)
+    separated_by_blanks = all(len(row) > 1 for row in rows)
     return (
-        several
+        separated_by_blanks
         or len(rows) >= _MANY_ROWS
         or any(re.search(r",0\d|,\d+[EeDd]", word) for word in with_comma)
     )

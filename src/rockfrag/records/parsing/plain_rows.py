@@ -45,6 +45,7 @@ def plain_rows(lines: list[str]) -> PlainRows:
         As many lines; those that do not become rows of numbers are left as they are. Clock times become seconds
         since the midnight before the first.
     """
+    # of clock times: their column, the first one, midnights passed since then, and the match of the last one
     found, column, start, days, last = [], None, "", 0, None
     for line in lines:
         clock = _CLOCK.search(line) if ":" in line else None

@@ -128,8 +128,8 @@ def read_unit(words: str) -> Unit:
         With an empty quantity if the words are no unit known here.
     """
     plain = _plain(words)
-    if _is_fraction_of_g(plain):
-        return _named(_is_fraction_of_g(plain))
+    if part_of_g := _part_of_g(plain):
+        return _named(part_of_g)
     before = _FACTOR_BEFORE.match(plain)
     if before and _TEN_TIMES_TOO_MUCH.match(before["plain"] or ""):
         # as many who write 10E-3 mean 10⁻³ as mean 0.01
@@ -152,7 +152,7 @@ def read_unit(words: str) -> Unit:
 
 def _without_factor(plain: str) -> Unit | None:
     """Return the unit beside a factor, or None."""
-    part_of_g = _is_fraction_of_g(plain)
+    part_of_g = _part_of_g(plain)
     return _named(part_of_g) if part_of_g else _bare_unit(plain)
 
 
@@ -189,8 +189,8 @@ def _with_remark(plain: str) -> Unit | None:
     return None if _bare_unit(parts["remark"]) else found
 
 
-def _is_fraction_of_g(plain: str) -> float:
-    """Return the SI factor of per cent of g and of g/10, which networks write in g/10; else 0."""
+def _part_of_g(plain: str) -> float:
+    """Return what one unit of per cent of g, or of g/10, g/100 ... of networks, is in m/s²; 0 of others."""
     squeezed = plain.replace(" ", "")
     if re.fullmatch(
         rf"(?:%|percent|percentage|pct)(?:of)?(?:{_GRAVITY_UNIT})", squeezed
@@ -303,6 +303,7 @@ def _of_dimension(parts: list[tuple[str, int]]) -> Unit | None:
 
 
 def _spelled(parts: list[tuple[str, int]]) -> str:
+    """Join the words of a length and a time to a unit: m and s give m/s; a single word stays as it is."""
     return "/".join(word for word, _ in parts)
 
 

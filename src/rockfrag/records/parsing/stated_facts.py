@@ -4,7 +4,7 @@ Words of many languages are understood (:mod:`.vocabulary`); lines are compared 
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 
@@ -149,8 +149,11 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
 
     Parameters
     ----------
-    lines
-        The uppermost first, without the titles of columns.
+    lines : the uppermost first, without the titles of columns
+
+    Returns
+    -------
+    The facts; a contradiction among them, in words.
     """
     plain = [folded(line) for line in lines]
     steps = list(dict.fromkeys(step for line in plain for step in _steps(line)))
@@ -178,26 +181,17 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
         other_unit=next(iter(others), ""),
         quantity="acceleration" if units else quantity,
         components=tuple(re.findall(r"[^\s,;]+", stated(_LIST, lines))),
-        factor=next(
-            (
-                line
-                for line, own in zip(lines, plain, strict=True)
-                if states_factor(own)
-            ),
-            "",
-        ),
-        digit=next(
-            (
-                line
-                for line, own in zip(lines, plain, strict=True)
-                if states_size_of_digit(own)
-            ),
-            "",
-        ),
+        factor=_first_line(lines, states_factor),
+        digit=_first_line(lines, states_size_of_digit),
         peaks=peaks_in_words(lines),
         details={key: stated(pattern, lines) for key, pattern in _KEYS.items()},
         contradiction=wrong or problem,
     )
+
+
+def _first_line(lines: Sequence[str], says: Callable[[str], bool]) -> str:
+    """First of some lines that says something in plain words (``folded``); empty if none does."""
+    return next((line for line in lines if says(folded(line))), "")
 
 
 def factor_beside_unit(line: str) -> str:
@@ -224,7 +218,10 @@ def factor_beside_unit(line: str) -> str:
 
 
 def _two_of(statement: tuple[str, Sequence[float | int | str]]) -> str:
-    """Return in words that one fact is stated in two ways, or nothing."""
+    """Return in words that one fact is stated in two ways; empty if it is not.
+
+    ``statement``: words for the fact, and the different values that were found for it.
+    """
     what, found = statement
     if len(found) < 2 or _close(found):
         return ""
@@ -305,10 +302,11 @@ def _duration(line: str) -> tuple[float, float] | None:
 
 def _value_in(match: re.Match[str]) -> float:
     """Return the value of a match, which may be a part of a second such as 1/200."""
-    numbers = [number_in(word) for word in NUMBER.findall(match["value"])]
-    if len(numbers) == 1:
-        return numbers[0]
-    return 1 / numbers[1] if numbers[1] else 0.0
+    first, *others = [number_in(word) for word in NUMBER.findall(match["value"])]
+    if not others:
+        return first
+    # one over the second number
+    return 1 / others[0] if others[0] else 0.0
 
 
 def _unit_of(match: re.Match[str]) -> str:
@@ -392,7 +390,10 @@ def _unknown_unit(words: str) -> str:
 
 
 def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str, str]:
-    """Return quantity and unit of acceleration that the line nearest the numbers states, and what is wrong."""
+    """Return quantity and unit of acceleration that the line nearest the numbers states, and what is wrong.
+
+    ``lines``: folded; each of the three is empty where nothing is stated, or wrong.
+    """
     for line in reversed(lines):
         explicit = _patterns()["unit"].search(line)
         units = _units_in(explicit["rest"]) if explicit else []
@@ -509,10 +510,16 @@ def _lone_unit_with_factor(line: str) -> Unit | None:
 
 
 def _sure_unit(line: str) -> Unit | None:
-    """Return a unit that only an acceleration has, if a line has one that is not of a value in it."""
+    """Return the unit of acceleration that a line has for sure; None if it has none.
+
+    Either the whole line is a unit without a factor (``g``, ``cm/s2``), or one of its words is, with seconds in
+    it, and is no value's: of ``Corrected accelerogram, cm/s2`` but not of ``PGA 12.3 cm/s2``. A ``g`` among words
+    may be a gram.
+    """
     whole = read_unit(line)
     if whole.quantity == "acceleration" and not whole.factor:
         return whole
+    # words, but a number is not parted from what follows it, nor a unit from its stroke
     parts = map(read_unit, re.split(r"(?<![\d.])[,;\s]+(?![/\d])", line))
     return next(
         (u for u in parts if u.quantity == "acceleration" and "/s" in u.name), None

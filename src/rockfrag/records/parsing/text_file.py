@@ -165,7 +165,15 @@ class TextFile:
     def check_count(
         self, promised: int, found: int, line: int, noun: str = "samples", each: int = 1
     ) -> None:
-        """Check that as many numbers were found, ``each`` of them a sample, as the header promises."""
+        """Check that as many numbers were found as the header promises; fewer pass where a short file is wanted.
+
+        Parameters
+        ----------
+        promised, found : samples, and numbers
+        line : for messages
+        noun : what is counted
+        each : numbers of one sample
+        """
         if found != promised * each and not (
             self.cut_short and 0 < found < promised * each
         ):

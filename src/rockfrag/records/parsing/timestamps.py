@@ -57,7 +57,14 @@ def clock_time(
     second: str,
     zone: str = "UTC",
 ) -> UTCDateTime | None:
-    """Return a date and time as UTC, or None if it is no time or its zone is not known."""
+    """Return a date and time as UTC, or None if it is no time or its zone is not known.
+
+    Parameters
+    ----------
+    year, month, day, hour, minute, second : words of numbers; a year of two digits is of the last hundred years or
+        so
+    zone : name of the time zone
+    """
     behind = _HOURS_BEHIND.get(zone.strip().upper() or "UTC")
     if behind is None:
         return None
@@ -179,7 +186,17 @@ def read_pairs(text: TextFile, first: int, stop: int) -> Channel:
 def channel_of_pairs(
     values: NDArray[np.float64], unit: str, text: TextFile, line: int, promised: int
 ) -> Channel:
-    """Return times [s] and accelerations that alternate as even samples; ``promised`` is the number stated."""
+    """Return times and accelerations that alternate as even samples.
+
+    Times that are not even are points between which the acceleration is linear.
+
+    Parameters
+    ----------
+    values : time [s], acceleration, time and so on, shape (2 n,)
+    unit : of the acceleration
+    text, line : the file, and its line for messages
+    promised : number of pairs that the header states
+    """
     if text.cut_short:
         values = values[: 2 * (values.size // 2)]
     times, accelerations = values[0::2], values[1::2]
@@ -214,7 +231,10 @@ def channel_of_pairs(
 
 
 def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:
-    """Return ``count`` numbers of fields that may touch: 10F7.3, the first one wider by a blank."""
+    """Return the numbers between two lines, in fields that may touch: 10F7.3, the first one wider by a blank.
+
+    ``count``: of the numbers, two a point.
+    """
     body = text.body(start, stop)
     try:
         values = parse_separated(body)

@@ -147,7 +147,10 @@ def _answered(folder: Path) -> bool:
 def _window(
     request: FdsnRequest, client: "Client"
 ) -> tuple[UTCDateTime, UTCDateTime, dict[str, str]]:
-    """Begin and end of the window that is asked for, and what is known of its earthquake."""
+    """Begin and end of the window that is asked for, and what is known of its earthquake.
+
+    Without an earthquake both are instants; with one they count from its origin time.
+    """
     if not request.earthquake:
         return request.begin, request.end, {}
     earthquake = client.get_events(eventid=request.earthquake)[0]

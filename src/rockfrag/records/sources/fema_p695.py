@@ -70,6 +70,8 @@ def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
     with _opened(file, "is not a readable set of FEMA P695") as stored:
         digest = sha256_of(file)
         for row in stored["records/table"][()]:
+            # real numbers, whole ones and words of the table: magnitude 0 and distance 2; RSN 0 and Vs30 2;
+            # earthquake 0, station 1 and names of the components 5 and 6
             numbers, counts = row["values_block_0"], row["values_block_1"]
             names = [text.decode("ascii") for text in row["values_block_2"]]
             facts = {

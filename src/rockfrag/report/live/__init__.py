@@ -86,7 +86,16 @@ def _element(
     outcomes: pd.DataFrame | None,
     texts: Catalogue,
 ) -> Markup:
-    """The page's part that simulates, with its data and scripts."""
+    """The page's part that simulates, with its data and scripts.
+
+    Parameters
+    ----------
+    bodies : that can be shown, by name
+    asked : those that were asked for, by name; what of them cannot be shown is named
+    motions : of the ground
+    outcomes : a row a case that is known already; None to simulate them
+    texts : of the page's language
+    """
     say = live_texts(texts)
     of_study = outcomes is not None
     if outcomes is None:
@@ -198,6 +207,7 @@ def samples_text(motion: Motion) -> str:
 
 
 def _body(name: str, system: System) -> dict[str, Any]:
+    """A system of one body or two as the script of the page takes it [m, kg]."""
     *below, upper = map(_block, system.in_plane().bodies, system.contacts)
     about = {"name": name, "statue": upper, "pedestal": below[0] if below else None}
     return {**about, "offset": system.contacts[-1].offset[0]}
@@ -224,7 +234,18 @@ _FALLING = 0.7  # rotation at which a falling body is drawn [rad]
 def outlines(
     system: System, position: Floats, theta: Floats
 ) -> list[list[tuple[float, float]]]:
-    """Corners of the box around each body, centres of gravity and rotations as in a sample of a response [m]."""
+    """Corners of the box around each body, in one sample of a response.
+
+    Parameters
+    ----------
+    system : in the plane
+    position : of the centres of gravity, x and y [m], shape (bodies, 2)
+    theta : rotations, clockwise [rad], shape (bodies,)
+
+    Returns
+    -------
+    Of each body, from below, four corners (x, y) [m].
+    """
     lean, found = 0.0, []
     each = zip(system.in_plane().bodies, system.contacts, system.shapes, strict=True)
     for k, (body, contact, shape) in enumerate(each):

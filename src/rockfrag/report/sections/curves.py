@@ -414,10 +414,8 @@ def fragility_figure(
         style.letter_panels(panels)
         panels[-1].set_xlabel(axis_label(first["im"], first["unit"]))
         figure.supylabel("Probability of overturning", fontsize=8)
-        solid, dots = (
-            Line2D([], [], color=GREY),
-            Line2D([], [], color=GREY, marker="o", ls="", ms=3.2),
-        )
+        solid = Line2D([], [], color=GREY)
+        dots = Line2D([], [], color=GREY, marker="o", ls="", ms=3.2)
         handles = {"lognormal": solid}
         if nonparametric:
             dotted = Line2D([], [], color=style.BLACK, ls=":", lw=0.9)

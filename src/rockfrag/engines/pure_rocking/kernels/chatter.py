@@ -40,28 +40,40 @@ CHATTER_TIME = 0.08
 # fraction of the speed left by impacts above which no end is foreseen
 LONGEST_FRACTION = 0.999
 MOST_AHEAD = 32  # samples of the ground that are looked at, at most
+HIGHEST_FLIGHTS = 0.2
+"""Largest speed over D/p of a chatter that is closed: flights are at most w²/2D = D/50 p² high, over which D
+varies by 2 %."""
+SAFETY_OF_BLOCKS = 1.03  # factor on T of a lone block, for that variation ...
+SAFETY_OF_STACKS = (
+    1.5  # ... and of a stack, whose thrown pedestal lengthens the flights of the statue
+)
+LEAVES = ((0, 1), (0, -1), (1, 0), (-1, 0))
+"""Contact states (c1, c2) by which a body leaves rest: of the statue on its right and left pivot, then of both."""
 
 
 class Ahead(NamedTuple):
-    """The ground from ``tau`` after sample ``k`` [m/s²], zero after ``last``; ``vertical`` is over gravity."""
+    """The ground from an instant on."""
 
-    samples: NDArray[np.float64]
+    samples: NDArray[np.float64]  # acceleration [m/s²], zero after ``last``
+    # likewise upwards over gravity, or none where the ground does not move so
     vertical: NDArray[np.float64]
-    factor: float
-    last: int
+    factor: float  # on both; of lone blocks it makes of accelerations parts of gravity
+    last: int  # number of the last sample
+    # the instant: a sample, and the part of the interval after it [-]
     k: int
     tau: float
-    dt: float
+    dt: float  # sampling interval [s]; 1 for lone blocks, whose time is counted in samples
 
 
 # --------------------------------------------------------------------------- at rest: stacks, and single histories
 
 RESTORING = np.dtype(
     [
-        # angular accelerations that bring the body back to rest on the four ways in which it can leave it: with a
-        # still ground, and per unit of the ground's acceleration
+        # angular accelerations that bring the body back to rest from each of LEAVES: with a still ground
+        # [rad/s²], and per unit of the ground's acceleration [rad/m]
         *fields("still per_ground", 4),
-        # p² of the statue, and 0.2 D/p with the D of a still ground: above it no chatter is closed
+        # p² of the statue [1/s²], and HIGHEST_FLIGHTS D/p [rad/s] with the D of a still ground: above it no
+        # chatter is closed
         *fields("frequency2 fastest"),
     ]
 )
@@ -70,20 +82,21 @@ RESTORING = np.dtype(
 
 @kernel
 def fill_restoring(body, restoring, scratch):
-    """Fill the restoring accelerations of a body; ``scratch`` is a STATE."""
-    for i, (c1, c2) in enumerate(((0, 1), (0, -1), (1, 0), (-1, 0))):
+    """Fill the record RESTORING of a body for the four ways to leave rest; ``scratch`` is a STATE."""
+    for i, (c1, c2) in enumerate(LEAVES):
         if c1 != 0 and body.fixed:
             restoring.still[i], restoring.per_ground[i] = math.inf, 0.0
         else:
             still = _restoring(body, c1, c2, 0.0, scratch)
             restoring.still[i] = still
             restoring.per_ground[i] = _restoring(body, c1, c2, 1.0, scratch) - still
+    # of the statue on its right pivot
     vx, vy, inertia = turning(body, 0, 1)
     # p² of a ground that does not move vertically
     frequency2 = body.gravity * hypot(vx, vy) / inertia
     restoring.frequency2 = frequency2
     restoring.fastest = (
-        0.2 * _least_restoring(restoring, 0.0, 1.0) / math.sqrt(frequency2)
+        HIGHEST_FLIGHTS * _least_restoring(restoring, 0.0, 1.0) / math.sqrt(frequency2)
     )
 
 
@@ -113,7 +126,7 @@ def _least_restoring(restoring, a, weight):
 
 @inlined_kernel
 def weight_at(ahead, k):
-    """Gravity at a sample over that of a ground that does not move vertically."""
+    """Gravity at sample k over that of a ground that does not move vertically [-]."""
     if k < ahead.vertical.size and k <= ahead.last:
         return 1.0 + ahead.factor * ahead.vertical[k]
     return 1.0
@@ -123,8 +136,17 @@ def weight_at(ahead, k):
 def dies_out(speed, fraction, safety, restoring, drop, ahead):
     """Whether the impacts that follow one at θ1 = θ2 = 0 end at rest before anything else can happen.
 
-    ``speed`` [rad/s] is the body's after the impact, ``fraction`` what an impact leaves of it, ``safety`` what T
-    is taken longer by; flights of more than ``drop`` [rad] are followed.
+    They last at most T = 2 w / (D (1 - e)), with the least restoring acceleration D over that time
+    (``docs/kernels.md``, "Accumulating impacts"). The ground is looked at sample by sample until T is over.
+
+    Parameters
+    ----------
+    speed : w, larger one of both rates after the impact [rad/s]
+    fraction : e, part of the speed that an impact leaves [-]
+    safety : factor by which T is taken longer [-]
+    restoring : record ``RESTORING`` of the body
+    drop : height of flights that are followed whatever comes of them [rad]
+    ahead : an :class:`Ahead`
     """
     if fraction > LONGEST_FRACTION:
         return False
@@ -133,6 +155,7 @@ def dies_out(speed, fraction, safety, restoring, drop, ahead):
         i = ahead.k + n
         a = ahead.samples[i] * ahead.factor if i <= ahead.last else 0.0
         least = min(least, _least_restoring(restoring, a, weight_at(ahead, i)))
+        # p w > HIGHEST_FLIGHTS D, squared
         if least <= 0.0 or speed * speed * restoring.frequency2 > 0.04 * least * least:
             return False
         if speed * speed > 2.0 * drop * least:
@@ -150,8 +173,19 @@ def dies_out(speed, fraction, safety, restoring, drop, ahead):
 
 @inlined_kernel
 def block_dies_out(w, side, here, there, ahead):
-    """Whether the impacts after a launch of a lone block on pivot ``here``, at ``w`` per sample, end at rest."""
-    # gravity only ever grows D; the least of it is enough
+    """Whether the impacts after one of a lone block end at rest before anything else can happen.
+
+    T = 2 w (1/D + e/D') / (1 - e e') as in :func:`dies_out`, with D = κ (W sin θc + A cos θc) of either pivot and
+    3 % more of it for the height of flights (``docs/kernels.md``, "Accumulating impacts").
+
+    Parameters
+    ----------
+    w : speed after the impact [rad per sample]
+    side : pivot that it rocks on then, +1 or -1
+    here, there : constants (``block.PIVOT``) of that pivot and of the other
+    ahead : an :class:`Ahead`, over g, time counted in samples
+    """
+    # gravity only ever grows D; the least of it, so far, is enough
     weight = weight_at(ahead, ahead.k)
     weight = min(weight, weight + ahead.tau * (weight_at(ahead, ahead.k + 1) - weight))
     factor, samples = ahead.factor, ahead.samples
@@ -165,6 +199,7 @@ def block_dies_out(w, side, here, there, ahead):
     loss = 1.0 - here.restitution * there.restitution
     if loss <= 0.0:
         return False
+    # 2 w and 3 % more
     flight = 2.06 * w / (kappa * loss)
     back = here.restitution * kappa / there.swing
     most = a
@@ -173,6 +208,7 @@ def block_dies_out(w, side, here, there, ahead):
         # flight × (1/D + e κ/κ' 1/D') with the least D and D' so far
         d = weight * s + (least if c > 0.0 else most) * c
         d_there = weight * s_there - (most if c > 0.0 else least) * c_there
+        # w² > (HIGHEST_FLIGHTS D / p)², with D = κ d and p² = κ
         if d <= 0.0 or d_there <= 0.0 or w * w > 0.04 * kappa * d * d:
             return False
         time = flight * (d_there + back * d)
@@ -191,7 +227,7 @@ def block_dies_out(w, side, here, there, ahead):
 
 
 class Hop(NamedTuple):
-    """A contact that has come down and off again while the other is open, with rates per sample."""
+    """A contact that has come down and off again while the other is open, with rates [rad per sample]."""
 
     ground: bool  # whether it is the ground's contact, not the interface's
     side: int  # sign of its opening now
@@ -214,16 +250,29 @@ def _turn_of(hop):
 
 @kernel
 def _opening(two, hop, side, g):
-    """Acceleration that opens a contact: on a still ground, per unit of its own, of weight; inertia."""
+    """Acceleration that opens the hopping contact, in parts, in the contact state of the constants ``two`` (TWO).
+
+    ``side``: sign of its opening in that state; ``g``: gravity [m/s²].
+
+    Returns
+    -------
+    still : acceleration on a still ground [rad per sample²]
+    per_ground : what each m/s² of the ground's acceleration adds
+    per_weight : what each unit of weight, gravity over g, adds
+    inertia : moment of inertia of the opening [kg m²]
+    """
     k1, s1, cosine, sine = _turn_of(hop)
     k2, s2 = hop.cosine, hop.sine
     m11, m12, m22, d = mass_matrix(two, cosine, sine)
     g1, g2 = -g * (two.v1x * k1 + two.v1y * s1), -g * (two.v2x * k2 + two.v2y * s2)
+    # right-hand sides of both bodies on a still ground, and what each m/s² of it adds
     f1 = d * hop.omega2 * hop.omega2 + g1
     f2 = -d * hop.omega1 * hop.omega1 + g2
     a1 = two.v1y * k1 - two.v1x * s1
     a2 = two.v2y * k2 - two.v2x * s2
     determinant = m11 * m22 - m12 * m12
+    # the contact opens by -θ1'' if the ground's, by θ1'' - θ2'' if the interface's, at a side of +1: times the
+    # determinant that is by1 times the right-hand side of body 1 and by2 times that of body 2
     if hop.ground:
         by1, by2, inertia = -m22, m12, determinant / m22
     else:
@@ -236,16 +285,25 @@ def _opening(two, hop, side, g):
 
 @inlined_kernel
 def may_close(hop, before, after, longest, g, ahead):
-    """Whether a contact that hops, at most ``longest`` [samples], may stay closed, while the other is open.
+    """Whether a contact that hops may stay closed from now on, while the other contact is open.
 
     Hops on both sides get slower by a part ``left`` of two impacts, so that all of them together last at most
     hops (1 / least + back / other), where ``least`` and ``other`` are the least accelerations that close the
     contact on either side. These are looked for over twice the time that those of now would give; if what they
     give is within that time, and short enough, the contact may stay closed (``docs/kernels.md``, "On a body that
     rocks on").
+
+    Parameters
+    ----------
+    hop : a :class:`Hop`
+    before, after : constants (``stack_constants.TWO``) of the contact states before and after its impact
+    longest : time that the hops may last at most [samples]
+    g : gravity [m/s²]
+    ahead : an :class:`Ahead` [m/s²]
     """
     h, k, tau, last, factor = ahead.dt, ahead.k, ahead.tau, ahead.last, ahead.factor
     samples = ahead.samples
+    # relative speed of the contact after its impact
     speed = abs(hop.omega1) if hop.ground else abs(hop.omega2 - hop.omega1)
     if speed > FASTEST_CHATTER * h:
         return False
@@ -291,7 +349,10 @@ def may_close(hop, before, after, longest, g, ahead):
 
 @inlined_kernel
 def closed(hop, two):
-    """Velocities once the contact stays closed, with the momentum of its velocities in this contact state."""
+    """Rates ω1 and ω2 [rad per sample] once the hopping contact stays closed: the momentum of what rocks on stays.
+
+    ``two``: constants (``stack_constants.TWO``) of the contact state after its impact.
+    """
     _, _, cosine, sine = _turn_of(hop)
     m11, m12, m22, _ = mass_matrix(two, cosine, sine)
     if hop.ground:

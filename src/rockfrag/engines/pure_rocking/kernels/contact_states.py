@@ -23,7 +23,7 @@ def side_of(value):
 
 @kernel
 def first_contacts(state):
-    """Contacts at the start: those with an angle, or opening, are open."""
+    """Contact states (c1, c2) at the start: contacts with an angle, or a rate, are open to that side."""
     c1 = side_of(state.theta1) or side_of(state.omega1)
     return c1, side_of(state.theta2 - state.theta1) or side_of(
         state.omega2 - state.omega1
@@ -32,7 +32,7 @@ def first_contacts(state):
 
 @kernel
 def at_rest(state, ground, gravity):
-    """Put a state at rest under an acceleration of the ground and a gravity."""
+    """Put a STATE at rest under an acceleration of the ground and a gravity [m/s²]."""
     state.c1, state.c2, state.ground, state.gravity = 0, 0, ground, gravity
     state.theta1, state.omega1, state.theta2, state.omega2 = 0.0, 0.0, 0.0, 0.0
 
@@ -62,7 +62,10 @@ def rest_interval(body, scratch):
 
 @kernel
 def _rest_moment(body, contact, c, ground, scratch):
-    """Contact moment s τ(s) of a contact at rest at its corner ``c``."""
+    """Contact moment s τ(s) [N m] of GROUND or INTERFACE at its corner s = ``c``, ±1, the body being at rest.
+
+    ``ground``: acceleration of the ground [m/s²]; ``scratch``: a STATE to work in.
+    """
     at_rest(scratch, ground, body.gravity)
     c1, c2 = (c, 1) if contact == GROUND else (1, c)
     _, _, _, f1, f2 = model.equations(body, model.pivot(c1), model.pivot(c2), scratch)
@@ -71,12 +74,15 @@ def _rest_moment(body, contact, c, ground, scratch):
 
 @kernel
 def settle(body, state):
-    """Contact state into which forces take closed contacts: they open, or are pushed at both corners."""
+    """Return the contact state (c1, c2) into which forces take a state: closed contacts stay, or open to a side.
+
+    States with the closed contacts unchanged, then one of them open, then both, are tried in turn; the first in
+    which contacts that open separate and those that stay are pressed at both corners is taken. Open contacts stay
+    open.
+    """
     c1, c2 = state.c1, state.c2
     if c1 != 0 and c2 != 0:
         return c1, c2
-    fallback1 = c1
-    fallback2 = c2
     for opened in range(3):
         for n1 in (0, 1, -1):
             if n1 != 0 and (c1 != 0 or body.fixed):
@@ -86,34 +92,50 @@ def settle(body, state):
                     continue
                 t1 = c1 if c1 != 0 else n1
                 t2 = c2 if c2 != 0 else n2
-                alpha1, alpha2 = model.accelerations(body, t1, t2, state)
-                there, alpha = (t1, t2), (alpha1, alpha2)
-                good = True
-                if c1 == 0:
-                    if n1 != 0:
-                        good = n1 * alpha1 > 0.0
-                    else:
-                        hold, corner = model.hold(body, GROUND, there, state, alpha)
-                        good = hold >= 0.0
-                        if opened == 0 and not good:
-                            fallback1 = corner
-                if c2 == 0:
-                    if n2 != 0:
-                        good = good and n2 * (alpha2 - alpha1) > 0.0
-                    else:
-                        hold, corner = model.hold(body, INTERFACE, there, state, alpha)
-                        good = good and hold >= 0.0
-                        if opened == 0 and hold < 0.0:
-                            fallback2 = corner
-                if good:
+                if _is_consistent(body, state, t1, t2):
                     return t1, t2
     # within rounding of a threshold: open what its own criterion opens
-    return 0 if body.fixed else fallback1, fallback2
+    n1 = c1 if c1 != 0 else _pulled_corner(body, GROUND, state)
+    n2 = c2 if c2 != 0 else _pulled_corner(body, INTERFACE, state)
+    return n1, n2
+
+
+@kernel
+def _pulled_corner(body, contact, state):
+    """Corner, ±1, at which a closed contact would have to be pulled, 0 if it is pressed at both."""
+    c1, c2 = state.c1, state.c2
+    alpha = model.accelerations(body, c1, c2, state)
+    hold, corner = model.hold(body, contact, (c1, c2), state, alpha)
+    return corner if hold < 0.0 else 0
+
+
+@kernel
+def _is_consistent(body, state, t1, t2):
+    """Whether closed contacts of a state may become (t1, t2) with the accelerations that follow from these.
+
+    Contacts that open have to separate, those that stay closed to be pressed at both corners.
+    """
+    contacts = t1, t2
+    alpha = model.accelerations(body, t1, t2, state)
+    good = True
+    if state.c1 == 0 and t1 != 0:
+        good = t1 * alpha[0] > 0.0
+    elif state.c1 == 0:
+        good = model.hold(body, GROUND, contacts, state, alpha)[0] >= 0.0
+    if good and state.c2 == 0 and t2 != 0:
+        good = t2 * (alpha[1] - alpha[0]) > 0.0
+    elif good and state.c2 == 0:
+        good = model.hold(body, INTERFACE, contacts, state, alpha)[0] >= 0.0
+    return good
 
 
 @kernel
 def release(body, state, fails, stuck):
-    """Contact state after a closed contact fails; ``stuck``: no time has passed since the last event."""
+    """Return the contact state (c1, c2) after a closed contact would have to be pulled.
+
+    ``fails``: that contact, GROUND or INTERFACE; ``stuck``: whether no time has passed since the last event, so
+    that it has to open whatever rounding says.
+    """
     c1, c2 = settle(body, state)
     if stuck and c1 == state.c1 and c2 == state.c2:
         # rounding at a threshold: open the contact that fails
@@ -125,7 +147,7 @@ def release(body, state, fails, stuck):
 
 @kernel
 def uplift(body, state):
-    """Contact state that a body at rest takes at or beyond the ground acceleration that lifts it."""
+    """Return the contact state (c1, c2) that a body at rest takes under a ground acceleration that lifts it."""
     c1, c2 = settle(body, state)
     if c1 == 0 and c2 == 0:
         # rounding at the threshold: open the contact with the least hold

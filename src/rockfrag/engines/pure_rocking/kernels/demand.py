@@ -38,27 +38,30 @@ def add_demand(demand, other):
 
 @inlined_kernel
 def _turned(arm, turn):
-    """Return R(θ) times a vector; ``turn``: sine and cosine of θ."""
+    """Vector ``arm`` turned clockwise by θ; ``turn``: sine and cosine of θ."""
     s, c = turn
     return arm[0] * c + arm[1] * s, arm[1] * c - arm[0] * s
 
 
 @inlined_kernel
 def _swung(arm, omega, alpha):
-    """Acceleration of the tip of a vector that turns clockwise about its foot."""
+    """Acceleration [m/s²] of the tip of a vector [m] that turns clockwise about its foot at ω and α, x and y."""
     x, y = arm
     return alpha * y - omega * omega * x, -alpha * x - omega * omega * y
 
 
 @inlined_kernel
 def _fraction(normal, shear):
-    """Coefficient of friction that a force asks for; infinite where it pulls."""
+    """Coefficient of friction that a force asks for, |shear| over normal [-]; infinite where it pulls."""
     return abs(shear) / normal if normal > 0.0 else math.inf
 
 
 @inlined_kernel
 def _components(body, turn1, force):
-    """Normal and shear of the ground and of the interface from the force on the statue and on both."""
+    """Normal and shear force of the ground, then of the interface, in the unit of ``force``.
+
+    ``turn1``: sine and cosine of θ1; ``force``: x and y of the force on the statue, and of that on both blocks.
+    """
     (x2, y2), (x1, y1) = force
     tx, ty = _turned((body.ex, body.ey), turn1)
     return y1, x1, -ty * x2 + tx * y2, tx * x2 + ty * y2
@@ -66,9 +69,9 @@ def _components(body, turn1, force):
 
 @kernel
 def forces(body, state, alpha1, alpha2):
-    """Normal and shear of the ground, and of the interface, in a state with its angular accelerations [N].
+    """Normal and shear force of the ground, then of the interface [N], in a state with θ1'' and θ2'' [rad/s²].
 
-    Both follow from the accelerations of the centres of gravity by the equations at the head of the module.
+    They follow from the accelerations of the centres of gravity by the equations at the head of the module.
     """
     turn1, turn2 = sin_cos(state.theta1), sin_cos(state.theta2)
     s1, s2 = pivot(state.c1), pivot(state.c2)
@@ -85,7 +88,10 @@ def forces(body, state, alpha1, alpha2):
 
 @inlined_kernel
 def _velocities(body, state, turn1, turn2):
-    """Velocities of both centres of gravity [m/s]."""
+    """Velocities of both centres of gravity [m/s]: x and y of the pedestal's, x and y of the statue's.
+
+    ``turn1``, ``turn2``: sine and cosine of θ1 and θ2.
+    """
     s1, s2 = pivot(state.c1), pivot(state.c2)
     x1, y1 = _turned(arm1(body, s1), turn1)
     xd, yd = _turned(reach(body, s1, s2), turn1)
@@ -96,7 +102,10 @@ def _velocities(body, state, turn1, turn2):
 
 @kernel
 def ask_forces(body, state, alpha1, alpha2, demand):
-    """Add what the forces of a state ask; the least normal force over both interfaces [N]."""
+    """Add to a record DEMAND what the forces of a state ask; ``alpha1``, ``alpha2``: θ1'' and θ2'' [rad/s²].
+
+    Returned is the least normal force over both interfaces [N].
+    """
     n1, t1, n2, t2 = forces(body, state, alpha1, alpha2)
     demand.friction2 = max(demand.friction2, _fraction(n2, t2))
     demand.normal2 = min(demand.normal2, n2)
@@ -109,10 +118,14 @@ def ask_forces(body, state, alpha1, alpha2, demand):
 
 @kernel
 def ask_impulses(body, before, after, demand):
-    """Add what the impulses of an impact ask of friction."""
+    """Add to a record DEMAND the friction that an impact asks; ``before``, ``after``: records STATE.
+
+    The impulse of a contact is what the momentum of all above it has grown by.
+    """
     turn1, turn2 = sin_cos(after.theta1), sin_cos(after.theta2)
     u1x, u1y, u2x, u2y = _velocities(body, before, turn1, turn2)
     v1x, v1y, v2x, v2y = _velocities(body, after, turn1, turn2)
+    # impulses of the interface and of the ground [N s]
     x2, y2 = body.m2 * (v2x - u2x), body.m2 * (v2y - u2y)
     x1, y1 = x2 + body.m1 * (v1x - u1x), y2 + body.m1 * (v1y - u1y)
     n1, t1, n2, t2 = _components(body, turn1, ((x2, y2), (x1, y1)))

@@ -22,9 +22,10 @@ that momentum gives (COUPLE), the place of the impulse from the middle (0) to th
 
 BODY = np.dtype(
     [
-        # pedestal: mass, inertia, half width, centre of gravity
+        # pedestal: mass, inertia, half width of its base, centre of gravity from the middle of its base
         *fields("m1 i1 b1 c1x c1y"),
-        *fields("tx ty ex ey"),  # middle and direction of the statue's footing
+        # middle of the statue's footing, from the same point, and unit vector along it
+        *fields("tx ty ex ey"),
         # statue: likewise, centre from the middle of its footing
         *fields("m2 i2 b2 c2x c2y"),
         # how ground and interface come off impacts that end rocking on the right and on the left pivot
@@ -62,7 +63,7 @@ def pivot(c):
 
 @inlined_kernel
 def number_of(c1, c2):
-    """Place of a contact state among the nine."""
+    """Place of the contact state (c1, c2) among the nine, 0 to 8; 4 is rest."""
     return 3 * c1 + c2 + 4
 
 
@@ -95,7 +96,7 @@ def reach(body, sigma1, sigma2):
 
 @kernel
 def inertia1(body, sigma1, sigma2):
-    """M11 = I1 + m1 |r1|² + m2 |d|²."""
+    """M11 = I1 + m1 |r1|² + m2 |d|² [kg m²], of rocking on ``sigma1`` with the statue on ``sigma2``."""
     rx, ry = arm1(body, sigma1)
     dx, dy = reach(body, sigma1, sigma2)
     return body.i1 + body.m1 * (rx * rx + ry * ry) + body.m2 * (dx * dx + dy * dy)
@@ -103,7 +104,7 @@ def inertia1(body, sigma1, sigma2):
 
 @kernel
 def inertia2(body, sigma2):
-    """M22 = I2 + m2 |r2|²."""
+    """M22 = I2 + m2 |r2|² [kg m²], of the statue about its pivot ``sigma2``."""
     x = body.c2x - sigma2 * body.b2 * body.ex
     y = body.c2y - sigma2 * body.b2 * body.ey
     return body.i2 + body.m2 * (x * x + y * y)
@@ -111,7 +112,7 @@ def inertia2(body, sigma2):
 
 @kernel
 def coupling(body, sigma1, sigma2):
-    """E and F of M12 = m2 d·r2 = E cos(θ2 - θ1) + F sin(θ2 - θ1)."""
+    """E and F [kg m²] of M12 = m2 d·r2 = E cos(θ2 - θ1) + F sin(θ2 - θ1), as a pair."""
     dx, dy = reach(body, sigma1, sigma2)
     rx, ry = arm2(body, sigma2)
     return body.m2 * (dx * rx + dy * ry), body.m2 * (dx * ry - dy * rx)
@@ -119,7 +120,7 @@ def coupling(body, sigma1, sigma2):
 
 @kernel
 def first_moment1(body, sigma1, sigma2):
-    """m1 r1 + m2 d at θ1 = 0, what gravity and ground acceleration act on in the first equation."""
+    """First moment m1 r1 + m2 d [kg m] at θ1 = 0, that gravity and the ground act on in the first equation."""
     rx, ry = arm1(body, sigma1)
     dx, dy = reach(body, sigma1, sigma2)
     return body.m1 * rx + body.m2 * dx, body.m1 * ry + body.m2 * dy
@@ -127,7 +128,7 @@ def first_moment1(body, sigma1, sigma2):
 
 @kernel
 def first_moment2(body, sigma2):
-    """m2 r2 at θ2 = 0."""
+    """First moment m2 r2 [kg m] at θ2 = 0, of the second equation."""
     rx, ry = arm2(body, sigma2)
     return body.m2 * rx, body.m2 * ry
 
@@ -137,7 +138,10 @@ def first_moment2(body, sigma2):
 
 @kernel
 def weight_moment(body, vx, vy, theta, state):
-    """-g V_x + a V_y with V = R(θ)(vx, vy): gravity's and the ground's fraction of f1 or f2."""
+    """-g V_x + a V_y [N m] with V = R(θ)(vx, vy): what gravity and the ground add to f1 or f2.
+
+    ``vx``, ``vy``: first moment at θ = 0 [kg m]; ``theta``: θ1 or θ2 [rad]; ``state`` has g and a.
+    """
     g, ground = state.gravity, state.ground
     if body.linear > 0:
         return ground * vy - g * (vx + vy * theta)
@@ -147,7 +151,10 @@ def weight_moment(body, vx, vy, theta, state):
 
 @kernel
 def equations(body, sigma1, sigma2, state):
-    """M11, M12, M22, f1, f2 of M θ'' + f = τ about the points σ1 and σ2."""
+    """M11, M12, M22 [kg m²], f1 and f2 [N m] of M θ'' + f = τ about the points σ1 and σ2, in a STATE.
+
+    f1 = D θ2'² + weight and f2 = -D θ1'² + weight (:func:`weight_moment`), with D = dM12/d(θ2 - θ1).
+    """
     e, f = coupling(body, sigma1, sigma2)
     theta1, theta2 = state.theta1, state.theta2
     if body.linear > 0:
@@ -185,9 +192,21 @@ GROUND, INTERFACE = 1, 2  # the two contacts
 
 @kernel
 def hold(body, contact, contacts, state, alpha):
-    """Least s τ(s) over both corners of a closed contact [N m], not to be negative, and its corner.
+    """Least contact moment over both corners of a closed contact: it has to be pressed at each, s τ(s) ≥ 0.
 
-    The pedestal rests where the ground is closed, and the statue is stuck to it where the interface is.
+    The pedestal rests where the ground is closed, and the statue is stuck to it where the interface is
+    (``docs/derivation.md``).
+
+    Parameters
+    ----------
+    body, state : records ``BODY`` and ``STATE``
+    contact : GROUND or INTERFACE
+    contacts : contact states (c1, c2) under which the body moves
+    alpha : θ1'' and θ2'' then [rad/s²]
+
+    Returns
+    -------
+    The least s τ(s) [N m], negative where the contact would have to be pulled, and the corner s = ±1 it is at.
     """
     if contact == GROUND and body.fixed:
         return 1.0, 1
@@ -223,7 +242,22 @@ def turn_between(body, state):
 
 @kernel
 def metric(body, first, other, turn):
-    """Kinetic products K11 to K22 of velocity fields about two pairs of points; ``turn`` is of θ2 - θ1."""
+    """Return the kinetic products of two pairs of velocity fields, mass times velocity times velocity [kg m²].
+
+    A field is the unit rotation of block 1 (carrying block 2) or of block 2 about a point σ of its base. Kij is
+    that of field i about the points ``first`` with field j about the points ``other``. With both the same, K is
+    the mass matrix; momentum about new pivots from old velocities takes them different (``docs/derivation.md``).
+
+    Parameters
+    ----------
+    body : record ``BODY``
+    first, other : points (σ1, σ2) on the ground and on the interface
+    turn : cosine and sine of θ2 - θ1 (:func:`turn_between`)
+
+    Returns
+    -------
+    K11, K12, K21, K22.
+    """
     c, s = turn
     ax, ay = arm1(body, first[0])
     bx, by = arm1(body, other[0])
@@ -256,7 +290,7 @@ def kinetic_energy(body, state):
 
 @kernel
 def energy_with(body, state, contacts, omega):
-    """Kinetic energy of a state with other contacts and velocities [J]."""
+    """Kinetic energy [J] of a state with other ``contacts`` (c1, c2) and velocities ``omega`` (ω1, ω2) [rad/s]."""
     pivots = pivot(contacts[0]), pivot(contacts[1])
     k11, k12, _, k22 = metric(body, pivots, pivots, turn_between(body, state))
     w1, w2 = omega
@@ -265,7 +299,11 @@ def energy_with(body, state, contacts, omega):
 
 @kernel
 def potential_energy(body, state):
-    """Potential energy above rest [J]: g Σ m y, quadratic in θ in the linearised equations."""
+    """Potential energy above rest [J]: g Σ m y, quadratic in θ in the linearised equations.
+
+    Σ m y changes with the upward component of the first moments, of which (v1x, v1y) turns by θ1 and (v2x, v2y) by
+    θ2.
+    """
     s1, s2 = pivot(state.c1), pivot(state.c2)
     theta1, theta2 = state.theta1, state.theta2
     v1x, v1y = first_moment1(body, s1, s2)
@@ -288,7 +326,10 @@ def potential_energy(body, state):
 
 @kernel
 def turning(body, c1, c2):
-    """First moment and inertia of what turns about an open pivot: the statue where c1 is 0, else all on c1's."""
+    """What turns about an open pivot: the statue where c1 is 0, else all on the pedestal's pivot.
+
+    Returned are its first moment x and y at θ = 0 [kg m] and its moment of inertia [kg m²], both about the pivot.
+    """
     s1, s2 = pivot(c1), pivot(c2)
     x2, y2 = first_moment2(body, s2)
     if c1 == 0:
@@ -302,7 +343,7 @@ def turning(body, c1, c2):
 
 @kernel
 def balance(body, c1, c2):
-    """Critical angle of what turns about an open pivot, its first moment and inertia (``turning``)."""
+    """Critical angle [rad] of what turns about an open pivot, and the three numbers of :func:`turning`."""
     vx, vy, inertia = turning(body, c1, c2)
     return atan2(-(c1 or c2) * vx, vy), vx, vy, inertia
 

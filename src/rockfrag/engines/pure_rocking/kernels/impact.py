@@ -19,11 +19,23 @@ from rockfrag.engines.pure_rocking.kernels.laws import moves_impulse, rate
 
 # relative growth of the kinetic energy in an impact that counts as rounding
 GAIN = 1e-12
+NO_CHOICE = 2  # in the place of a contact state, where there is none to try
 
 
 @kernel
 def impact(body, state, closes1, closes2):
-    """After contacts close: c1, c2, ω1⁺, ω2⁺, and 1 if a measured restitution had to give way, otherwise 0."""
+    """Return what an impact leads to: momentum first, then a measured restitution as far as energy does not grow.
+
+    Parameters
+    ----------
+    body : record ``BODY``
+    state : record ``STATE`` just before
+    closes1, closes2 : whether the ground's contact and the interface's close
+
+    Returns
+    -------
+    Contact states c1 and c2, rates ω1⁺ and ω2⁺ [rad/s], and 1 if a restitution had to give way, otherwise 0.
+    """
     n1, n2, w1, w2, _ = _admissible(body, state, closes1, closes2, False)
     if not body.measured:
         return n1, n2, w1, w2, 0
@@ -32,13 +44,17 @@ def impact(body, state, closes1, closes2):
 
 @kernel
 def stuck(body, state, n1, n2):
-    """Velocities after an impact that is made to end with the contacts (n1, n2)."""
+    """Rates ω1⁺ and ω2⁺ [rad/s] after an impact that is made to end with the contact states (n1, n2)."""
     return _projected(body, state, n1, n2, (pivot(n1), pivot(n2)))
 
 
 @kernel
 def _projected(body, state, n1, n2, test):
-    """Velocities after an impact that ends with contacts (n1, n2) and acts at the points ``test``."""
+    """Rates ω1⁺ and ω2⁺ [rad/s] after an impact that ends with the contact states (n1, n2).
+
+    The moments of momentum about the points ``test`` (σ1, σ2), at which the impulses act, stay as they are:
+    K ω⁺ = B ω⁻ with the kinetic products (``equations.metric``) of new and of old pivots.
+    """
     if n1 == 0 and n2 == 0:
         return 0.0, 0.0
     turn = turn_between(body, state)
@@ -60,7 +76,11 @@ def _projected(body, state, n1, n2, test):
 
 @kernel
 def _impulse_moments(body, state, new, after, test):
-    """Impulse moments on the fields that turn block 1 and block 2 about the points ``test``."""
+    """Impulse moments [N m s] about the points ``test`` (σ1, σ2): on both blocks, and on block 2 alone.
+
+    They are by how much the moments of momentum grow. ``new``: pivots (σ1, σ2) after the impact; ``after``: rates
+    ω1⁺ and ω2⁺ [rad/s].
+    """
     turn = turn_between(body, state)
     k11, k12, k21, k22 = metric(body, test, new, turn)
     b11, b12, b21, b22 = metric(body, test, (pivot(state.c1), pivot(state.c2)), turn)
@@ -72,7 +92,11 @@ def _impulse_moments(body, state, new, after, test):
 
 @kernel
 def _pushed(body, state, contacts, after, test):
-    """Whether the contacts that an impact leaves closed get impulses that push, at both their corners."""
+    """Whether the contacts that an impact leaves closed get impulses that push, at both their corners.
+
+    ``contacts``: their states (c1, c2) after it; ``after``: rates ω1⁺ and ω2⁺ [rad/s]; ``test``: points (σ1, σ2)
+    at which impulses act where contacts are open.
+    """
     n1, n2 = contacts
     new = pivot(n1), pivot(n2)
     speed = abs(state.omega1) + abs(state.omega2)
@@ -92,18 +116,27 @@ def _pushed(body, state, contacts, after, test):
 
 @inlined_kernel
 def _choices(c, closes):
-    """States that a contact may have after an impact, open before stuck, filled up with 2."""
+    """Three states that a contact ``c`` may have after an impact, in the order of trial, filled up by NO_CHOICE.
+
+    One that ``closes`` comes off on its other pivot or stays closed; a full one opens to either side or stays; one
+    that is open elsewhere stays open.
+    """
     if closes:
-        return -c, 0, 2
-    return (1, -1, 0) if c == 0 else (c, 2, 2)
+        return -c, 0, NO_CHOICE
+    return (1, -1, 0) if c == 0 else (c, NO_CHOICE, NO_CHOICE)
 
 
 @kernel
 def _admissible(body, state, closes1, closes2, moved):
-    """Try the states an impact may lead to, open before stuck; the first admissible one, and whether there is one.
+    """Try the contact states that an impact may lead to, open before stuck, and return the first admissible one.
 
-    Open contacts separate, and closed ones are pushed together at both corners.  Impulses act at the pivots, or,
-    if ``moved``, where the law of position has them.
+    In it open contacts separate, and closed ones are pushed together at both corners. Impulses act at the pivots,
+    or, if ``moved``, where the law of position has them.
+
+    Returns
+    -------
+    Contact states c1 and c2, rates ω1⁺ and ω2⁺ [rad/s], and whether there is an admissible one; if not, what met
+    stays together.
     """
     at1, at2 = 1.0, 1.0
     if moved:
@@ -117,11 +150,12 @@ def _admissible(body, state, closes1, closes2, moved):
     free1 = closes1 or c1 == 0
     free2 = closes2 or c2 == 0
     for n1 in _choices(c1, closes1):
-        if n1 == 2 or (body.fixed and n1 != 0):
+        if n1 == NO_CHOICE or (body.fixed and n1 != 0):
             continue
         for n2 in _choices(c2, closes2):
-            if n2 == 2:
+            if n2 == NO_CHOICE:
                 continue
+            # points about which momentum is taken: the new pivots, or where the law of position has the impulses
             test = (
                 pivot(n1) * (at1 if n1 != 0 else 1.0),
                 pivot(n2) * (at2 if n2 != 0 else 1.0),
@@ -145,7 +179,11 @@ def _admissible(body, state, closes1, closes2, moved):
 
 @kernel
 def _law(body, state, contact, closes):
-    """Law by which contact 1 or 2 comes off its impact, as an IMPACT_LAW, and whether there is one."""
+    """Law by which ``contact`` 1 (ground) or 2 (interface) comes off its impact.
+
+    Returned are its number and its value (``IMPACT_LAW``), and whether the contact closes and the law is not
+    momentum.
+    """
     if contact == 1:
         after = body.after1l if state.c1 > 0 else body.after1r
     else:
@@ -155,7 +193,12 @@ def _law(body, state, contact, closes):
 
 @kernel
 def _measured(body, state, closes, momentum):
-    """State and velocities after an impact by the laws of its closing contacts; 1 if one gave way."""
+    """Return the outcome of an impact (as :func:`impact`) by the laws of its closing contacts.
+
+    The laws say at which rates closing contacts come off, from those by ``momentum`` (c1, c2, ω1⁺, ω2⁺). Where
+    energy would grow by these, rates are taken between those of momentum and those of the laws, as far as it does
+    not.
+    """
     n1, n2, w1, w2 = momentum
     law1, value1, has1 = _law(body, state, 1, closes[0])
     law2, value2, has2 = _law(body, state, 2, closes[1])
@@ -183,10 +226,10 @@ def _measured(body, state, closes, momentum):
     energy = kinetic_energy(body, state)
     if energy_with(body, state, (n1, n2), (w1, w2)) <= energy * (1.0 + GAIN):
         return n1, n2, w1, w2, 0 if exists else 1
-    # as far from what momentum says as energy allows
+    # as far from what momentum says as energy allows, by halving
     low, high = 0.0, 1.0
     for i in range(61):
-        # the last time where energy is known not to grow
+        # the last time at a fraction where energy is known not to grow
         fraction = 0.5 * (low + high) if i < 60 else low
         first = has1, rate1 + fraction * (want1 - rate1)
         two = has2, rate2 + fraction * (want2 - rate2)
@@ -200,7 +243,7 @@ def _measured(body, state, closes, momentum):
 
 @kernel
 def _with_rates(body, state, closes, others, ground, interface):
-    """State and velocities after an impact in which closing contacts come off at given rates.
+    """Contact states c1 and c2 and rates ω1⁺ and ω2⁺ after an impact in which contacts come off at given rates.
 
     A couple in the closing contact does it, which leaves one momentum as it is: that of the whole about the pivot
     of the ground if the interface closes, that of the statue about its pivot if the ground does.  The other
@@ -258,7 +301,10 @@ def _with_rates(body, state, closes, others, ground, interface):
 
 @inlined_kernel
 def mass_matrix(two, cosine, sine):
-    """M11, M12, M22 and D of a contact state in which both blocks rotate, at cos Δ, sin Δ."""
+    """M11, M12, M22 and D [kg m²] of a contact state in which both blocks rotate, Δ = θ2 - θ1.
+
+    ``two``: its constants (``stack_constants.TWO``); ``cosine``, ``sine``: of Δ; D = dM12/dΔ.
+    """
     return (
         two.m11,
         two.e * cosine + two.f * sine,
@@ -269,7 +315,12 @@ def mass_matrix(two, cosine, sine):
 
 @inlined_kernel
 def ground_impact(before, after, product, turn, omega1, omega2):
-    """Velocities after the ground closes (Psycharis, 1990): both momenta about the new pivots."""
+    """Rates ω1⁺ and ω2⁺ after the ground closes (Psycharis, 1990): both momenta about the new pivots stay.
+
+    ``before``, ``after``: constants (TWO) of the contact states; ``product``: K11 of new and old pivots
+    (``IMPACT.ground``); ``turn``: cosine and sine of θ2 - θ1; ``omega1``, ``omega2``: rates before, in the unit of
+    those returned.
+    """
     _, old12, m22, _ = mass_matrix(before, turn[0], turn[1])
     m11, m12, _, _ = mass_matrix(after, turn[0], turn[1])
     l1 = product * omega1 + m12 * omega2
@@ -280,7 +331,11 @@ def ground_impact(before, after, product, turn, omega1, omega2):
 
 @inlined_kernel
 def interface_impact(after, products, omega1, omega2):
-    """Velocities after the interface closes, Δ = 0: momentum of the whole and of the statue."""
+    """Rates ω1⁺ and ω2⁺ after the interface closes, at θ1 = θ2: momenta of the whole and of the statue stay.
+
+    ``after``: constants (TWO) of the contact state; ``products``: K11 to K22 of new and old pivots
+    (``IMPACT.both11`` and its like); ``omega1``, ``omega2``: rates before, in the unit of those returned.
+    """
     m11, m12, m22 = after.m11, after.e, after.m22
     l1 = products.both11 * omega1 + products.both12 * omega2
     l2 = products.both21 * omega1 + products.both22 * omega2
@@ -293,5 +348,9 @@ def interface_impact(after, products, omega1, omega2):
 
 @inlined_kernel
 def block_impact(from_pivot, rate):
-    """ψ' on the new pivot after an impact at rate ψ' > 0 that ends rocking on a pivot (``block.PIVOT``)."""
+    """Return ψ' after an impact at the rate ψ' > 0 that ends rocking on a pivot, by the restitution of that pivot.
+
+    ψ = θc - |θ| is a lone block's angle to balance, so that its rate changes its sign, in whatever unit it is;
+    ``from_pivot`` is a record ``lanes.block.PIVOT``.
+    """
     return -rate * from_pivot.restitution

@@ -14,6 +14,7 @@ from rockfrag.laws import Law, laws
 
 @inlined_kernel
 def _by_momentum(law, value, by_momentum, before, moved):  # type: ignore[no-untyped-def]
+    """Rate that momentum gives: the last resort of :func:`_chosen`."""
     return by_momentum
 
 
@@ -23,6 +24,7 @@ def _chosen(others: Any, declared: Law) -> Any:
 
     @inlined_kernel
     def chosen(law, value, by_momentum, before, moved):  # type: ignore[no-untyped-def]
+        """Rate by one law, if its number is given, or by the others."""
         if law == number:
             return own(value, by_momentum, before, moved)
         return others(law, value, by_momentum, before, moved)

@@ -43,9 +43,10 @@ SUMMARY = np.dtype(
 
 SAMPLE = np.dtype(
     [
-        *fields("theta1 omega1 theta2 omega2"),
-        *whole("c1 c2"),
-        *fields("alpha1 alpha2 work"),  # work so far
+        *fields("theta1 omega1 theta2 omega2"),  # [rad], [rad/s]
+        *whole("c1 c2"),  # contact states of ground and interface
+        # angular accelerations [rad/s²], and work of the ground so far [J]
+        *fields("alpha1 alpha2 work"),
     ],
     align=True,
 )
@@ -53,8 +54,8 @@ SAMPLE = np.dtype(
 
 CONTACT_EVENT = np.dtype(
     [
-        *fields("time"),
-        *whole("kind"),
+        *fields("time"),  # [s]
+        *whole("kind"),  # OPENING and its like
         *fields("before after", of=equations.STATE),
         *fields("energy_before energy_after"),  # kinetic [J]
     ],
@@ -80,26 +81,23 @@ def copy_state(source, target):
 
 @kernel
 def move_within(step, series, tau, state):
-    """Fill angles, rates, ground and gravity of a state at an instant of a step."""
+    """Fill angles, rates, ground and gravity of a state at the time ``tau`` [-] of a step.
+
+    ``step``: a ``taylor.Step``; ``series``: its SERIES.
+    """
     first, two = series.one.angle, series.two.angle
     state.theta1, state.omega1 = value(first, tau), slope(first, tau) / step.length
     state.theta2, state.omega2 = value(two, tau), slope(two, tau) / step.length
-    state.ground, state.gravity = (
-        step.ground + step.rise * tau,
-        step.gravity + step.lift * tau,
-    )
+    state.ground = step.ground + step.rise * tau
+    state.gravity = step.gravity + step.lift * tau
 
 
 @kernel
 def begin(state, summary):
-    """Set the summary to that of a history that has not moved yet."""
+    """Set a SUMMARY to that of a history that begins with a STATE and has not moved yet."""
     summary.fallen, summary.fall_time = 0, math.nan
-    summary.impacts, summary.grazings, summary.contact_events, summary.given_way = (
-        0,
-        0,
-        0,
-        0,
-    )
+    summary.impacts, summary.grazings = 0, 0
+    summary.contact_events, summary.given_way = 0, 0
     summary.unstable_distance, summary.work = math.inf, 0.0
     summary.lost_contact = math.nan
     no_demand(summary.demand)
@@ -110,7 +108,7 @@ def begin(state, summary):
 
 @kernel
 def fill_balances(body, balances):
-    """Fill the ways to balance, shape (9,), by the contacts about which a body does; at rest it has none."""
+    """Fill the records BALANCE of a body, shape (9,), by ``equations.number_of`` its contacts; none is of rest."""
     for c1 in (1, -1, 0):
         for c2 in (-1, 0, 1):
             if c1 != 0 or c2 != 0:
@@ -122,7 +120,11 @@ def fill_balances(body, balances):
 
 @kernel
 def _approach(way, side, theta, omega, summary):
-    """Update the closest approach to one way to balance; return θ/θcritical."""
+    """Take a rotation [rad] and its rate [rad/s] into the summary's closest approach to a way to balance.
+
+    ``way``: record BALANCE; ``side``: +1 or -1, the pivot of the rotation. Returned is θ/θcritical, positive
+    there.
+    """
     away = 1.0 - side * theta / way.critical
     speed = omega / way.critical
     square = away * away + speed * speed / way.frequency2
@@ -133,7 +135,10 @@ def _approach(way, side, theta, omega, summary):
 
 @kernel
 def track(balances, state, summary):
-    """Update extremes and the closest approach to balance; whether a block is beyond its balance."""
+    """Take a state into the summary's extremes and closest approach to balance (``balances``, records BALANCE).
+
+    Returned is whether a block is beyond its balance.
+    """
     ratio1, ratio2 = 0.0, 0.0
     theta1, theta2 = state.theta1, state.theta2
     omega1, omega2 = state.omega1, state.omega2
@@ -189,7 +194,11 @@ def note_demand(body, step, series, end, work, summary):
 
 @kernel
 def work_of(body, c1, c2, series, end, step):
-    """Work of the ground's acceleration over (0, end] of a step [J]: -∫ Σ m (a x' + a_v y') dt."""
+    """Work of the ground's acceleration over (0, end] of a step [J]: -∫ Σ m (a x' + a_v y') dt.
+
+    ``end`` is a part of the step [-]; ``series`` has the angles over the step. Velocities x' and y' of the centres
+    of gravity follow from the first moments m1 r1 + m2 d and m2 r2, turned by θ1 and θ2 (``equations``).
+    """
     s1, s2 = equations.pivot(c1), equations.pivot(c2)
     v1x, v1y = equations.first_moment1(body, s1, s2)
     v2x, v2y = equations.first_moment2(body, s2)
@@ -199,6 +208,7 @@ def work_of(body, c1, c2, series, end, step):
     total = 0.0
     for i in range(3):
         for sign in (-1.0, 1.0):
+            # Σ m x' and -Σ m y', by time in steps, at a point of the quadrature
             tau = 0.5 * end * (1.0 + sign * nodes[i])
             t1 = value(series.one.angle, tau)
             t2 = value(series.two.angle, tau)
@@ -224,22 +234,21 @@ def work_of(body, c1, c2, series, end, step):
 
 @kernel
 def keep_sample(body, state, sample, work):
-    """Write a state into the history."""
+    """Write a state into a record SAMPLE of the history; ``work``: of the ground until then [J]."""
     alpha1, alpha2 = equations.accelerations(body, state.c1, state.c2, state)
     sample.theta1, sample.omega1 = state.theta1, state.omega1
     sample.theta2, sample.omega2 = state.theta2, state.omega2
-    sample.c1, sample.c2, sample.alpha1, sample.alpha2 = (
-        state.c1,
-        state.c2,
-        alpha1,
-        alpha2,
-    )
+    sample.c1, sample.c2 = state.c1, state.c2
+    sample.alpha1, sample.alpha2 = alpha1, alpha2
     sample.work = work
 
 
 @kernel
 def keep_contact_event(body, time, kind, before, after, contact_events, summary):
-    """Write a contact event, if there is room, and count it."""
+    """Write a contact event at a time [s], if there is room, and count it in the summary.
+
+    ``kind``: OPENING and its like; ``before``, ``after``: records STATE.
+    """
     if summary.contact_events < len(contact_events):
         contact_event = contact_events[summary.contact_events]
         contact_event.time, contact_event.kind = time, kind

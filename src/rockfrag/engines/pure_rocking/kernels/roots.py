@@ -47,13 +47,18 @@ def bend(q, tau):
 
 @inlined_kernel
 def dips(gap, out, out_at_end):
-    """Whether a contact that closes at the start and opens at the end may have closed in between."""
+    """Whether a contact that falls at the start of a step and rises at its end may have closed in between.
+
+    ``gap`` is its opening angle [rad], ``out`` and ``out_at_end`` are the rates of that per step. The parabola
+    through them has its least value gap - out²/(2 (out_at_end - out)); the half is left out, so that no closing is
+    missed.
+    """
     return (out < 0.0) & (out_at_end > 0.0) & (gap * (out_at_end - out) < out * out)
 
 
 @inlined_kernel
 def hops(gap, out, out_at_end, bend):
-    """Whether a contact that opens, and still opens at the end, may have closed in between.
+    """Whether a contact that rises at the start of a step, and still does at its end, may have closed in between.
 
     By its rate and acceleration at the start and its rate at the end the gap is gap + τ (out + bend τ/2 + c τ²/3).
     It can close only where that parabola has a negative minimum within the step, bend² > 16/3 out c and -3/4 bend
@@ -74,10 +79,11 @@ def hops(gap, out, out_at_end, bend):
 
 @inlined_kernel
 def crossing(q, end):
-    """Find when Σ q_k τᵏ falls through zero, given that it is negative at ``end``; 0 if it never was positive.
+    """Find the time τ [-] when Σ q_k τᵏ falls through zero, given that it is negative at the time ``end``.
 
-    It starts at zero or above.  Chebyshev's method from the root of the parabola that it begins as.  A q that dips
-    below zero and comes back before is for ``closing_time``.
+    ``q`` has eight coefficients. The series starts at zero or above; returned is 0 if it never was positive.
+    Chebyshev's method from the root of the parabola that it begins as.  A q that dips below zero and comes back
+    before is for ``closing_time``.
     """
     q0, q1, q2, q3, q4, q5, q6, q7 = q
     if q0 <= 0.0:
@@ -114,7 +120,7 @@ def crossing(q, end):
 
 @kernel
 def _halved(q, end):
-    """Find a root of Σ q_k τᵏ, which is positive at 0 and negative at ``end``, by halving."""
+    """Find a root of Σ q_k τᵏ, which is positive at 0 and negative at the time ``end`` [-], by halving."""
     low = 0.0
     high = end
     for _ in range(60):
@@ -130,7 +136,7 @@ def _halved(q, end):
 
 @kernel
 def crossing_time(q):
-    """Find when a series that starts at zero or above, and ends below, falls through zero."""
+    """Find the time in a step [-] at which a series that starts at zero or above, and ends below, is zero."""
     return crossing((q[0], q[1], q[2], q[3], q[4], q[5], q[6], q[7]), 1.0)
 
 
@@ -173,7 +179,10 @@ def closing_time(q, end):
 
 @kernel
 def _first_root(q, start, end):
-    """Find by Newton's method where q falls through zero in (start, end], given q(end) < 0; -1.0: nowhere."""
+    """Find by Newton's method the time at which q falls through zero in (start, end], given that q(end) < 0.
+
+    A step that leaves the bracket is a halving. Returned is -1.0 if q is not positive at ``start``.
+    """
     low = start
     if value(q, low) <= 0.0:
         return -1.0
@@ -197,7 +206,7 @@ def _first_root(q, start, end):
 
 @kernel
 def _lowest_point(q, start, end):
-    """Find the minimum inside (start, end) of a q that falls at ``start`` and rises at ``end``."""
+    """Find the time of the minimum inside (start, end) of a q that falls at ``start`` and rises at ``end``."""
     low = start
     high = end
     for _ in range(60):
@@ -213,7 +222,12 @@ def _lowest_point(q, start, end):
 
 @kernel
 def graze(gap, rates):
-    """Time at which a lone block that rises and falls again touches, NEVER if not; ``gap`` is ψ less its angle."""
+    """Time in a step [-] at which a lone block that comes down and leaves again within it touches; NEVER if not.
+
+    ``gap`` is ψ less the critical angle as the step begins, negative while the block is off the ground; ``rates``
+    are the Taylor coefficients of ψ' per step, positive at the start and negative at the end.
+    """
+    # the most that ψ can rise: positive coefficients alone
     most = gap + max(0.0, rates[0]) + max(0.0, 0.5 * rates[1]) + max(0.0, rates[2])
     most += max(0.0, rates[3])
     if most + max(0.0, rates[4]) + max(0.0, rates[5]) + max(0.0, rates[6]) < 0.0:
@@ -245,7 +259,10 @@ def graze(gap, rates):
 
 @inlined_kernel
 def guess_between(bracket):
-    """Next point of regula falsi in (low, hold ≥ 0, high, hold < 0, which end moved), off both of its ends."""
+    """Next point of regula falsi in a bracket, off both of its ends.
+
+    A bracket is (low, hold at low, ≥ 0, high, hold at high, < 0, which end moved last: 1 low, -1 high, 0 none).
+    """
     low, at_low, high, at_high, _ = bracket
     tau = high - at_high * (high - low) / (at_high - at_low)
     return min(max(tau, low + 4e-14), high - 4e-14)
@@ -253,7 +270,10 @@ def guess_between(bracket):
 
 @inlined_kernel
 def narrowed(bracket, tau, hold):
-    """Narrow the bracket to the side of τ on which the hold changes sign (the Illinois variant)."""
+    """Return the bracket (:func:`guess_between`) narrowed to the side of τ on which the hold changes sign.
+
+    The hold at an end that stays twice is halved (Illinois variant), so that both ends move.
+    """
     low, at_low, high, at_high, moved = bracket
     if hold >= 0.0:
         return tau, hold, high, 0.5 * at_high if moved == 1 else at_high, 1
@@ -262,5 +282,13 @@ def narrowed(bracket, tau, hold):
 
 @inlined_kernel
 def is_narrow(bracket):
-    """Whether the instant is known to 1e-13 of the step; its end has let go, and is what counts."""
-    return bracket[2] - bracket[0] <= 1e-13
+    """Whether a bracket is at most 1e-13 of the step wide."""
+    low, _, high, _, _ = bracket
+    return high - low <= 1e-13
+
+
+@inlined_kernel
+def end_of(bracket):
+    """Time of the end of a bracket [-], at which the contact has let go."""
+    _, _, high, _, _ = bracket
+    return high

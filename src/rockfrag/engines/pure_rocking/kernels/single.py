@@ -23,6 +23,8 @@ from rockfrag.engines.pure_rocking.kernels import (
 from rockfrag.engines.pure_rocking.kernels.chatter import (
     HISTORY,
     RESTORING,
+    SAFETY_OF_BLOCKS,
+    SAFETY_OF_STACKS,
     Ahead,
     dies_out,
     fill_restoring,
@@ -41,6 +43,7 @@ from rockfrag.engines.pure_rocking.kernels.taylor import (
 )
 
 GRAZING_SPEED = 1e-3  # relative speed [rad/s] below which a contact grazes
+CLOSED = 1e-13  # opening [rad] below which a contact closes together with the other
 MAX_CONTACT_EVENTS_PER_STEP = 400
 """Contact events of a sample after which its contacts are made to stay closed."""
 
@@ -74,16 +77,20 @@ SCRATCH = np.dtype(
 
 @entry_kernel
 def integrate(body, shaking, initial, history, contact_events, summary, work):
-    """Integrate one body through its shaking and, after it, free rocking; the number of samples done.
+    """Integrate one body through its shaking and, after it, free rocking.
 
     Parameters
     ----------
     body : record ``BODY``
     shaking : a :class:`Shaking`: samples [m/s²], interval [s], steps
     initial : record ``STATE``, of which angles and rates count
-    history, contact_events : take as many records ``SAMPLE`` and ``CONTACT_EVENT`` as fit
+    history, contact_events : arrays of ``SAMPLE`` and ``CONTACT_EVENT``, filled as far as they reach
     summary : record ``SUMMARY``, changed in place
     work : record ``SCRATCH`` to work in
+
+    Returns
+    -------
+    Number of samples done, the first one included.
     """
     state = work.state
     record.copy_state(initial, state)
@@ -107,12 +114,7 @@ def integrate(body, shaking, initial, history, contact_events, summary, work):
         state.ground, state.gravity = right, _gravity(body, shaking, k + 1)
         if len(history) > k + 1:
             record.keep_sample(body, state, history[k + 1], summary.work)
-        lying1 = abs(state.theta1) >= contact_states.HALF_TURN
-        turned2 = max(abs(state.theta2), abs(state.theta2 - state.theta1))
-        lying2 = turned2 >= contact_states.HALF_TURN
-        if lying1 or lying2:
-            summary.fallen = 1 if lying1 and not body.fixed else 2
-            summary.fall_time = (done - 1) * shaking.dt
+        if _note_fall(body, state, (done - 1) * shaking.dt, summary):
             break
         if not work.beyond:
             add_demand(summary.demand, summary.beyond)
@@ -123,8 +125,20 @@ def integrate(body, shaking, initial, history, contact_events, summary, work):
 
 
 @inlined_kernel
+def _note_fall(body, state, clock, summary):
+    """Note in the summary a block that lies down at the time ``clock`` [s]; return whether one does."""
+    lying1 = abs(state.theta1) >= contact_states.HALF_TURN
+    turned2 = max(abs(state.theta2), abs(state.theta2 - state.theta1))
+    lying2 = turned2 >= contact_states.HALF_TURN
+    if lying1 or lying2:
+        summary.fallen = 1 if lying1 and not body.fixed else 2
+        summary.fall_time = clock
+    return lying1 or lying2
+
+
+@inlined_kernel
 def _gravity(body, shaking, k):
-    """Gravity and the ground's upward acceleration at a sample [m/s²]."""
+    """Sum of gravity and the ground's upward acceleration at sample k [m/s²]."""
     if k < shaking.vertical.size:
         return body.gravity + body.gravity * (shaking.scale * shaking.vertical[k])
     return body.gravity
@@ -132,7 +146,7 @@ def _gravity(body, shaking, k):
 
 @inlined_kernel
 def _substep(body, shaking, k, sub):
-    """Return the step of one part of the interval after sample k."""
+    """Return part ``sub``, counted from 0, of the interval after sample k as a :class:`Step`."""
     samples, scale, substeps = shaking.samples, shaking.scale, shaking.substeps
     n = samples.size
     left = samples[k] * scale if k < n else 0.0
@@ -149,7 +163,7 @@ def _substep(body, shaking, k, sub):
 
 @inlined_kernel
 def _rest_of(step, tau):
-    """Return what is left of a step after the part tau of it."""
+    """Return the rest of a :class:`Step` of which the part ``tau`` [-] has passed."""
     left = 1.0 - tau
     return Step(
         step.length * left,
@@ -162,66 +176,110 @@ def _rest_of(step, tau):
 
 @inlined_kernel
 def _clock(shaking, k, passed):
-    """Time of an instant [s], so many substeps after sample k."""
+    """Time [s] at which ``passed`` substeps, whole ones and part of one, have gone by since sample k."""
     return (k + passed / shaking.substeps) * shaking.dt
+
+
+class NextEvent(NamedTuple):
+    """The next contact event in a step."""
+
+    when: float  # time in the step [-], roots.NEVER if there is none
+    # closed contact that opens, contact_states.GROUND or INTERFACE; 0 if contacts close
+    fails: int
+    closes1: bool  # whether the ground's contact closes
+    closes2: bool  # whether the interface's does
 
 
 @kernel
 def _through_sample(body, shaking, k, contact_events, summary, work):
-    """Take a body from sample k to the next, through all contact events in between."""
-    state, series, before = work.state, work.series, work.before
-    count = 0
+    """Take the state of ``work`` from sample k to the next one, from contact event to contact event.
+
+    What is left of a substep is one step: its series are filled, the state follows them to the first contact event
+    or to the end, the event changes the state, and the rest is a step again.
+    """
+    state, count = work.state, 0
     for sub in range(shaking.substeps):
-        whole = _substep(body, shaking, k, sub)
+        substep = _substep(body, shaking, k, sub)
+        # part of the substep that has passed
         tau = 0.0
         while tau < 1.0 and count <= MAX_CONTACT_EVENTS_PER_STEP + 20:
-            remaining = 1.0 - tau
-            step = _rest_of(whole, tau)
-            fill_series(body, state, step, series)
-            when, fails, closes1, closes2 = _next_contact_event(
-                body, state, step, series, work.trial
-            )
-            at = min(1.0, when)
+            left = 1.0 - tau
+            step = _rest_of(substep, tau)
+            fill_series(body, state, step, work.series)
+            event = _next_contact_event(body, state, step, work.series, work.trial)
+            at = min(1.0, event.when)
             lifts = _follow(body, step, at, summary, work)
             if lifts != roots.NEVER and math.isnan(summary.lost_contact):
-                clock = _clock(shaking, k, sub + tau + lifts * remaining)
-                summary.lost_contact, kind = clock, record.LIFTING
-                record.keep_contact_event(
-                    body, clock, kind, state, state, contact_events, summary
-                )
-            tau += at * remaining
-            if when > 1.0:
+                clock = _clock(shaking, k, sub + tau + lifts * left)
+                _note_lifting(body, clock, state, contact_events, summary)
+            tau += at * left
+            if event.when > 1.0:
                 break
-
             count += 1
-            state.ground = whole.ground + whole.rise * tau
-            state.gravity = whole.gravity + whole.lift * tau
-            if fails == 0 and closes1:
-                state.theta1 = 0.0
-            if fails == 0 and (closes2 or state.c2 == 0):
-                state.theta2 = state.theta1
-            record.copy_state(state, before)
-            if fails != 0:
-                kind = record.OPENING
-                state.c1, state.c2 = contact_states.release(
-                    body, state, fails, at == 0.0
-                )
-            else:
-                instant = k, (sub + tau) / shaking.substeps
-                forced = count > MAX_CONTACT_EVENTS_PER_STEP
-                closes = closes1, closes2
-                kind = _land(body, shaking, instant, closes, forced, summary, work)
+            state.ground = substep.ground + substep.rise * tau
+            state.gravity = substep.gravity + substep.lift * tau
+            kind = _through_contact_event(
+                body, shaking, (k, sub + tau), event, count, summary, work
+            )
             clock = _clock(shaking, k, sub + tau)
             record.keep_contact_event(
-                body, clock, kind, before, state, contact_events, summary
+                body, clock, kind, work.before, state, contact_events, summary
             )
+
+
+@inlined_kernel
+def _note_lifting(body, clock, state, contact_events, summary):
+    """Note that a normal force first vanishes at the time ``clock`` [s]; the state goes on unchanged."""
+    summary.lost_contact = clock
+    record.keep_contact_event(
+        body, clock, record.LIFTING, state, state, contact_events, summary
+    )
+
+
+@kernel
+def _through_contact_event(body, shaking, instant, event, count, summary, work):
+    """Take the state of ``work`` through a contact event; the state before it is left in ``work.before``.
+
+    Parameters
+    ----------
+    body : record ``BODY``
+    shaking : a :class:`Shaking`
+    instant : a sample, and the substeps that have passed since [-]
+    event : a :class:`NextEvent`
+    count : number of contact events since the sample, this one included
+    summary : record ``SUMMARY``, changed in place
+    work : record ``SCRATCH``, whose state has come to the instant
+
+    Returns
+    -------
+    Kind of the contact event (``record.OPENING`` and its like).
+    """
+    state = work.state
+    # contacts that close do so exactly, and what stands on an open contact turns with it
+    if event.fails == 0 and event.closes1:
+        state.theta1 = 0.0
+    if event.fails == 0 and (event.closes2 or state.c2 == 0):
+        state.theta2 = state.theta1
+    record.copy_state(state, work.before)
+    if event.fails != 0:
+        no_time_passed = event.when == 0.0
+        state.c1, state.c2 = contact_states.release(
+            body, state, event.fails, no_time_passed
+        )
+        return record.OPENING
+    k, passed = instant
+    forced = count > MAX_CONTACT_EVENTS_PER_STEP
+    closes = event.closes1, event.closes2
+    part = k, passed / shaking.substeps
+    return _land(body, shaking, part, closes, forced, summary, work)
 
 
 @kernel
 def _follow(body, step, at, summary, work):
-    """Move the state to an instant of its step, and note demands, extremes and the ground's work on the way.
+    """Move the state to the time ``at`` of its step [-]; note demands, extremes and the ground's work on the way.
 
-    Returned is the time in the step at which a normal force first vanishes (``record.note_demand``).
+    Returned is the time in the step [-] at which a normal force first vanishes, NEVER if none does
+    (``record.note_demand``).
     """
     state, series = work.state, work.series
     _move(state, series, at, step.length)
@@ -236,8 +294,8 @@ def _follow(body, step, at, summary, work):
 def _land(body, shaking, instant, closes, forced, summary, work):
     """Take the state of ``work`` through the impact of the contacts that close, and return its kind.
 
-    ``instant``: a sample and the part of the interval after it; ``forced``: contacts must stay closed, as there
-    were too many contact events.
+    ``instant``: a sample and the part of the interval after it [-]; ``closes``: whether ground and interface
+    close; ``forced``: contacts must stay closed, as there were too many contact events.
     """
     state, before = work.state, work.before
     k, part = instant
@@ -268,7 +326,10 @@ def _land(body, shaking, instant, closes, forced, summary, work):
 
 @kernel
 def _after_impact(body, before, closes, after):
-    """Fill the state after an impact that nothing else has ended, and return it."""
+    """Fill the STATE ``after`` an impact from momentum and restitution alone, and return it.
+
+    Chatter that is closed at once (:func:`resolve_impact`) is left out; ``closes`` as of :func:`_land`.
+    """
     record.copy_state(before, after)
     n1, n2, w1, w2, _ = impact(body, before, closes[0], closes[1])
     after.c1, after.c2, after.omega1, after.omega2 = n1, n2, w1, w2
@@ -277,7 +338,7 @@ def _after_impact(body, before, closes, after):
 
 @kernel
 def _move(state, series, tau, h):
-    """Move a state to an instant of its series."""
+    """Move a state to the time ``tau`` [-] of its series over a step of ``h`` [s]."""
     first, two = series.one.angle, series.two.angle
     open1, open2 = state.c1 != 0, state.c2 != 0
     state.theta1 = roots.value(first, tau) if open1 else 0.0
@@ -288,10 +349,25 @@ def _move(state, series, tau, h):
 
 @kernel
 def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, forced):
-    """Take a state through an impact; return the kind of contact event, and 1 if a law had to give way.
+    """Take a state through an impact: momentum and restitution, then whatever of the chatter after it is closed.
 
     A contact that comes off slower than the closing speed stays closed, one that has met too often within a sample
-    (``forced``) too, and impacts that are sure to end at rest are not followed.
+    (``forced``) too, and impacts that are sure to end at rest are not followed (``docs/kernels.md``, "Accumulating
+    impacts").
+
+    Parameters
+    ----------
+    body : record ``BODY``
+    state : record ``STATE`` just before the impact, changed in place
+    closes : whether ground and interface close
+    restoring : record ``chatter.RESTORING`` of the body
+    ahead : the ground from now on, a :class:`Ahead`
+    chatter_tolerance : a :class:`ChatterTolerance`
+    forced : whether contacts that meet must stay closed
+
+    Returns
+    -------
+    Kind of the contact event, ``record.CLOSING`` or ``record.CHATTER``; 1 if a law had to give way, otherwise 0.
     """
     closes1, closes2 = closes
     kind = record.CLOSING
@@ -317,8 +393,7 @@ def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, for
         and speed < restoring.fastest
     ):
         fraction = math.sqrt(equations.kinetic_energy(body, state) / before)
-        # a pedestal that is thrown about lengthens the flights of the statue
-        safety = 1.03 if body.fixed else 1.5
+        safety = SAFETY_OF_BLOCKS if body.fixed else SAFETY_OF_STACKS
         if dies_out(speed, fraction, safety, restoring, chatter_tolerance.drop, ahead):
             state.c1, state.c2, state.omega1, state.omega2 = 0, 0, 0.0, 0.0
             kind = record.CHATTER
@@ -332,7 +407,10 @@ def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, for
 
 @kernel
 def _hold_at(body, contact, step, series, tau, trial):
-    """Least contact moment of a closed contact at τ; ``trial`` holds the contacts of the step."""
+    """Least contact moment [N m] of a closed contact at the time ``tau`` of a step, negative where it lets go.
+
+    ``contact``: GROUND or INTERFACE; ``trial``: a STATE with the contacts of the step, moved to that time.
+    """
     record.move_within(step, series, tau, trial)
     alpha = equations.accelerations(body, trial.c1, trial.c2, trial)
     return equations.hold(body, contact, (trial.c1, trial.c2), trial, alpha)[0]
@@ -340,7 +418,11 @@ def _hold_at(body, contact, step, series, tau, trial):
 
 @kernel
 def _failing_time(body, contact, step, series, end, trial):
-    """Find when a closed contact's criterion first fails in [0, end]; NEVER if it holds."""
+    """Find when in [0, end] of a step a closed contact would first have to be pulled; NEVER if it stays pressed.
+
+    ``contact`` and ``trial`` as of :func:`_hold_at`. The instant is bracketed by the step's ends, or by its start
+    and a dip between them, and found by regula falsi.
+    """
     at_start = _hold_at(body, contact, step, series, 0.0, trial)
     at_end = _hold_at(body, contact, step, series, end, trial)
     high = end
@@ -367,12 +449,15 @@ def _failing_time(body, contact, step, series, end, trial):
         bracket = roots.narrowed(
             bracket, tau, _hold_at(body, contact, step, series, tau, trial)
         )
-    return bracket[2]
+    return roots.end_of(bracket)
 
 
 @kernel
 def fill_gap(series, contact, side):
-    """Fill the series of a contact's opening angle; return its value at the end of the step."""
+    """Fill ``series.gap`` with the opening angle [rad] of a contact that opens to a ``side``, +1 or -1.
+
+    Returned is the angle at the end of the step, negative if the contact has closed.
+    """
     first, two, gap = series.one.angle, series.two.angle, series.gap
     end = 0.0
     for i in range(ORDER + 1):
@@ -387,7 +472,11 @@ def fill_gap(series, contact, side):
 
 @kernel
 def first_closing(c1, c2, series):
-    """Time in a step at which a contact closes first, NEVER if none does; whether ground and interface do."""
+    """Find the first closing in a step of the open ones of the contacts ``c1`` (ground) and ``c2`` (interface).
+
+    ``series.gap`` is used on the way. Returned are its time in the step, from 0 to 1, NEVER if none closes, and
+    whether ground and interface close then.
+    """
     when = roots.NEVER
     closes1 = False
     closes2 = False
@@ -402,14 +491,14 @@ def first_closing(c1, c2, series):
             closes1 = False
             closes2 = True
             when = time
-        elif closes1 and roots.value(series.gap, when) < 1e-13:
+        elif closes1 and roots.value(series.gap, when) < CLOSED:
             closes2 = True
     return when, closes1, closes2
 
 
 @kernel
 def _next_contact_event(body, state, step, series, trial):
-    """Time of the next contact event, or NEVER; which contact fails (0 none); whether each closes."""
+    """Return the :class:`NextEvent` of a step whose series are filled; ``trial`` is a STATE to work in."""
     c1, c2 = state.c1, state.c2
     when, closes1, closes2 = first_closing(c1, c2, series)
     trial.c1, trial.c2 = c1, c2
@@ -423,5 +512,5 @@ def _next_contact_event(body, state, step, series, trial):
             when = time
             fails = contact
     if fails != 0:
-        return when, fails, False, False
-    return when, 0, closes1, closes2
+        closes1, closes2 = False, False
+    return NextEvent(when, fails, closes1, closes2)

@@ -40,7 +40,7 @@ class Step(NamedTuple):
 
 @kernel
 def _extend(rotation, k, linear):
-    """Append coefficient ``k`` of sine and cosine, or of θ and 1 in the linearised equations."""
+    """Append coefficient ``k`` of sine and cosine to a ROTATION; ``linear``: those of θ and 1 in their place."""
     if linear:
         rotation.sine[k] = rotation.angle[k]
         rotation.cosine[k] = 1.0 if k == 0 else 0.0
@@ -65,7 +65,10 @@ def _extend_circular(rotation, k):
 
 @kernel
 def _fill_one(body, moment, inertia, step, rotation):
-    """Series of one rotation: J θ'' = g V_x - a V_y; the first two coefficients are there."""
+    """Fill the series of one ROTATION: J θ'' = g V_x - a V_y; its first two coefficients are there.
+
+    ``moment``: first moment (vx, vy) about the pivot at θ = 0 [kg m]; ``inertia``: J about it [kg m²].
+    """
     vx, vy = moment
     scale = step.length * step.length / inertia
     g = step.gravity
@@ -88,7 +91,10 @@ def _fill_one(body, moment, inertia, step, rotation):
 
 @kernel
 def _weight(body, moment, step, rotation, k):
-    """Coefficient ``k`` of a V_y - g V_x, V the first moment of a rotation."""
+    """Coefficient ``k`` of a V_y - g V_x [N m], V the first moment [kg m] that turns with a rotation.
+
+    ``moment``: V at θ = 0.
+    """
     vx, vy = moment
     g = step.gravity
     f = (step.ground * vy - g * vx) * rotation.cosine[k] - g * vy * rotation.sine[k]
@@ -104,7 +110,7 @@ def _weight(body, moment, step, rotation, k):
 
 @kernel
 def _fill_two(body, c1, c2, step, series):
-    """Series of both rotations of patterns 1 and 2; the first two coefficients of both angles are there.
+    """Fill the series of both rotations where both blocks rock; both angles have their first two coefficients.
 
     Coefficient k of M11 θ1'' + M12 θ2'' + D θ2'² + f1 = 0 and of its counterpart gives that of both angles two
     orders above (``lanes/series.rates_of_two``).
@@ -114,10 +120,8 @@ def _fill_two(body, c1, c2, step, series):
     m11 = equations.inertia1(body, s1, s2)
     m22 = equations.inertia2(body, s2)
     e, f = equations.coupling(body, s1, s2)
-    moment1, moment2 = (
-        equations.first_moment1(body, s1, s2),
-        equations.first_moment2(body, s2),
-    )
+    moment1 = equations.first_moment1(body, s1, s2)
+    moment2 = equations.first_moment2(body, s2)
     linear = body.linear > 0
     first, two, between = series.one, series.two, series.between
     for k in range(ORDER - 1):
@@ -149,10 +153,12 @@ def _fill_two(body, c1, c2, step, series):
 
 @kernel
 def _coupled(series, k, coupling, right):
-    """Take from both right-hand sides what lower orders of the other rotation add to coefficient k.
+    """Return both right-hand sides less what lower orders of the other rotation add to coefficient k.
 
-    That is D θ2'² + (M12 - m₀) θ2'' for the first, and (M12 - m₀) θ1'' - D θ1'² for the second, with
-    M12 = E cos Δ + F sin Δ and D = F cos Δ - E sin Δ; ``coupling`` is E and F.
+    That is D θ2'² + (M12 - m₀) θ2'' for the first, and (M12 - m₀) θ1'' - D θ1'² for the second, with Δ = θ2 - θ1,
+    M12 = E cos Δ + F sin Δ and D = F cos Δ - E sin Δ. m₀, coefficient 0 of M12, stands on the left side, in the
+    mass matrix, so that the sum with M12 begins at its coefficient 1. ``coupling`` is E and F, ``right`` both
+    right-hand sides.
     """
     (e, f), (right1, right2) = coupling, right
     first, two, between = series.one.angle, series.two.angle, series.between
@@ -179,7 +185,7 @@ def _coupled(series, k, coupling, right):
 
 @kernel
 def fill_series(body, state, step, series):
-    """Fill the series of both angles over a step from a state."""
+    """Fill the series (SERIES) of both angles over a :class:`Step` from a STATE, in any contact state."""
     first, two = series.one, series.two
     for k in range(ORDER + 1):
         first.angle[k] = 0.0
@@ -235,7 +241,7 @@ def keep_rates(rows, i, rates):
 
 @inlined_kernel
 def travel(rates, t):
-    """ψ(t) - ψ(0)."""
+    """ψ(t) - ψ(0) [rad], of Taylor coefficients 0 to 6 of ψ' per step; ``t``: time in the step [-]."""
     p = fma(t, 1 / 7 * rates[6], 1 / 6 * rates[5])
     p = fma(t, p, 0.2 * rates[4])
     p = fma(t, p, 0.25 * rates[3])
@@ -246,7 +252,7 @@ def travel(rates, t):
 
 @inlined_kernel
 def rate_at(rates, t):
-    """ψ'(t)."""
+    """ψ'(t) [rad per step], of Taylor coefficients 0 to 6 of ψ'; ``t``: time in the step [-]."""
     v = fma(t, rates[6], rates[5])
     v = fma(t, fma(t, fma(t, fma(t, v, rates[4]), rates[3]), rates[2]), rates[1])
     return fma(t, v, rates[0])

@@ -81,13 +81,16 @@ MEMORY = np.dtype(
 
 
 def worker() -> np.void:
-    """Memory for one thread."""
+    """Make the memory of one thread, a record ``MEMORY``."""
     return np.zeros(1, MEMORY)[0]
 
 
 @kernel
 def advance(lane, upward):
-    """Advance all lanes to the end of their samples, flag contact events; if not ``upward`` the weight is one."""
+    """Advance all lanes to the end of their samples and flag contact events; if not ``upward`` the weight is one.
+
+    The two calls make two copies of the loop, so that a weight of one costs nothing.
+    """
     if upward:
         _advance(lane, True)
     else:
@@ -96,75 +99,100 @@ def advance(lane, upward):
 
 @inlined_kernel
 def _advance(lane, upward):
-    """Advance every lane; ``upward`` is known where this is compiled into ``advance``.
+    """Advance every lane by the rest of its sample, and store where that begins, where it ends, and its flag.
 
-    Everything is stored in every lane: conditional stores cost many times as much. ψ = θc - |θ| is the angle to
-    balance, of which an impact at ψ = θc begins anew; ``w`` and ``v`` are its rates per step, at both ends of it.
-
-    When a fall is certain, whatever the ground does: ``docs/kernels.md``, "A certain fall".
+    Everything is stored in every lane: conditional stores cost many times as much. ``upward``, whether the weight
+    varies, is known where this is compiled into ``advance``. Rates ``w`` are per step, ``omega`` per sample.
     """
     for i in range(LANES):
-        psi = lane.psi[i]
-        omega = lane.omega[i]
+        psi, omega = lane.psi[i], lane.omega[i]
         left = lane.part_left[i]
-        kappa = lane.kappa[i]
-        angle = lane.angle[i]
-        a = lane.ground[i]
-        a_end = lane.ground_end[i]
-        w = omega * left
-        s, c = taylor.quick_sine_cosine(psi)
+        a, a_end = lane.ground[i], lane.ground_end[i]
         u = lane.weight[i] if upward else 1.0
         u_end = lane.weight_end[i] if upward else 1.0
-        weight = u, u_end - u, upward
-        rates = rates_of_one((s, c), w, kappa * left * left, (a, a_end - a), weight)
-        end = psi + taylor.travel(rates, 1.0)
-        v = taylor.rate_at(rates, 1.0)
+        w = omega * left
+        turn = taylor.quick_sine_cosine(psi)
+        ground, weight = (a, a_end - a), (u, u_end - u, upward)
+        rates = rates_of_one(turn, w, lane.kappa[i] * left * left, ground, weight)
         taylor.keep_rates(lane.rates, i, rates)
-        # what may happen in the step
-        barrier = lane.barrier[i] - lane.heavy[i] * c + lane.bound[i] * s
-        certain = (w < 0.0) & (0.5 * omega * omega >= kappa * barrier)
-        grazes = (w > 0.0) & (v < 0.0)
-        touches = end >= angle
-        lies = end <= angle - HALF_TURN
-        # leaves, and may fall back and be pulled open again before the sample is over
-        falls_back = hops(angle - psi, -w, -v, -rates[1])
-        flag = TOUCHES if touches | grazes | lies | falls_back else cases.QUIET
-        flag = FALLS if certain else flag
-        lane.flag[i] = flag
-        # extremes so far; the turning point of a parabola lies between the samples
-        turn = psi + 0.5 * w * w / min(w - v, -1e-300)
-        low = (turn if (w < 0.0) & (v > 0.0) else end) * lane.per_angle[i]
-        v = v / left
-        near = low * low + v * v * lane.per_speed[i]
-        was_low, was_fast, was_near = lane.low[i], lane.fast[i], lane.near[i]
-        lane.was_low[i], lane.was_fast[i], lane.was_near[i] = (
-            was_low,
-            was_fast,
-            was_near,
-        )
-        lane.low[i] = min(was_low, low)
-        lane.fast[i] = max(was_fast, abs(v))
-        lane.near[i] = min(was_near, near)
-        # where the step began and where it ends
+        end = psi + taylor.travel(rates, 1.0)
+        w_end = taylor.rate_at(rates, 1.0)
+        flag = _flag(lane, i, (psi, w, rates[1]), (end, w_end))
+        lane.flag[i] = FALLS if _is_certain(lane, i, turn, omega, w) else flag
+        # rate at the end per sample
+        omega_end = w_end / left
+        _keep_extremes(lane, i, _turning_point(psi, w, end, w_end), omega_end)
         lane.was_psi[i], lane.was_omega[i], lane.was_left[i] = psi, omega, left
-        lane.psi[i] = end
-        lane.omega[i] = v
+        lane.psi[i], lane.omega[i] = end, omega_end
         lane.ground[i] = a_end
         if upward:
             lane.weight[i] = u_end
         lane.part_left[i] = 1.0
 
 
+@inlined_kernel
+def _is_certain(lane, i, turn, omega, w):
+    """Whether the block of lane i falls whatever the ground does: ``docs/kernels.md``, "A certain fall".
+
+    ``turn``: sine and cosine of ψ as the step begins; ``omega``, ``w``: ψ' then, per sample and per step.
+    """
+    s, c = turn
+    barrier = lane.barrier[i] - lane.heavy[i] * c + lane.bound[i] * s
+    return (w < 0.0) & (0.5 * omega * omega >= lane.kappa[i] * barrier)
+
+
+@inlined_kernel
+def _flag(lane, i, begin, end):
+    """Flag of a step of lane i: TOUCHES if the block may meet the ground in it, or lies at its end; or QUIET.
+
+    ``begin`` has ψ and its first and second derivative, ``end`` ψ and the first one, by time in steps. An impact
+    is where ψ rises to the critical angle.
+    """
+    psi, w, bend = begin
+    psi_end, w_end = end
+    angle = lane.angle[i]
+    grazes = (w > 0.0) & (w_end < 0.0)
+    touches = psi_end >= angle
+    lies = psi_end <= angle - HALF_TURN
+    # leaves, and may fall back and be pulled open again before the sample is over
+    falls_back = hops(angle - psi, -w, -w_end, -bend)
+    return TOUCHES if touches | grazes | lies | falls_back else cases.QUIET
+
+
+@inlined_kernel
+def _turning_point(psi, w, psi_end, w_end):
+    """Least ψ of a step, that of a parabola where the block turns back in it; rates are per step."""
+    turn = psi + 0.5 * w * w / min(w - w_end, -1e-300)
+    return turn if (w < 0.0) & (w_end > 0.0) else psi_end
+
+
+@inlined_kernel
+def _keep_extremes(lane, i, psi, omega):
+    """Store the extremes of lane i before its step, and take ψ and ψ' [1/sample] of the step into them."""
+    low = psi * lane.per_angle[i]
+    near = low * low + omega * omega * lane.per_speed[i]
+    lane.was_low[i], lane.low[i] = lane.low[i], min(lane.low[i], low)
+    lane.was_fast[i], lane.fast[i] = lane.fast[i], max(lane.fast[i], abs(omega))
+    lane.was_near[i], lane.near[i] = lane.near[i], min(lane.near[i], near)
+
+
 @entry_kernel
 def integrate_blocks(ensemble, motions, worker, outcomes):
-    """Integrate an ensemble of lone blocks, factors over g, a worker a thread; steps of lanes, in a tuple.
+    """Integrate an ensemble of lone blocks: this thread takes case after case until none is left.
+
+    Each pass advances all lanes by a sample; lanes that then stop, for a contact event, a fall or the end of their
+    motion, are handled one by one (``docs/kernels.md``, "Two schedulers").
 
     Parameters
     ----------
-    ensemble : an :class:`Ensemble` of bodies, scales and steps
-    motions : a :class:`Motions`, accelerations over g
-    worker : named tuple of records, the memory of one thread
+    ensemble : an :class:`Ensemble` whose bodies are ``PIVOT``, with factors over g
+    motions : a :class:`Motions` [m/s²]
+    worker : record ``MEMORY`` of this thread
     outcomes : records ``OUTCOME`` of all cases, changed in place
+
+    Returns
+    -------
+    Steps that lanes made, to see how busy they were, in a tuple.
     """
     lane, tallies = worker.lane, worker.tallies
     upward = motions.vertical.size > 0
@@ -211,27 +239,29 @@ def _pivot(lane, i, side, ensemble):
 
 @inlined_kernel
 def _fall(lane, i, tally):
-    """Take note of a certain fall, which passes balance at the latest at the speed that energy leaves it."""
+    """Take note of a certain fall of lane i in its ``tally`` (OUTCOME), and mark the lane as fallen.
+
+    Before balance (ψ > 0) the distance to it is that at which the block passes it with the speed that energy
+    leaves it, w² - 2 κ (1 - cos ψ), the ground being still; beyond, that of now.
+    """
     _restore_extremes(lane, i)
     psi, w = lane.was_psi[i], lane.was_omega[i]
-    near = w * w / lane.kappa[i]
+    square = w * w / lane.kappa[i]
     if psi > 0.0:
-        near -= 2.0 * (1.0 - cos(psi))
+        square -= 2.0 * (1.0 - cos(psi))
     else:
-        near += psi * psi
-    near = math.sqrt(max(0.0, near)) / lane.angle[i]
-    tally.unstable_distance = min(tally.unstable_distance, near)
+        square += psi * psi
+    distance = math.sqrt(max(0.0, square)) / lane.angle[i]
+    tally.unstable_distance = min(tally.unstable_distance, distance)
     lane.fell[i] = 1
 
 
 @inlined_kernel
 def _restore_extremes(lane, i):
     """Forget what the step of a lane would have reached without its contact event."""
-    lane.low[i], lane.fast[i], lane.near[i] = (
-        lane.was_low[i],
-        lane.was_fast[i],
-        lane.was_near[i],
-    )
+    lane.low[i] = lane.was_low[i]
+    lane.fast[i] = lane.was_fast[i]
+    lane.near[i] = lane.was_near[i]
 
 
 @inlined_kernel
@@ -239,7 +269,7 @@ def _take_contact_event(lane, i, tally, ensemble, motions):
     """Take a lane through the impact in its step, or to the step's end if there is none.
 
     Afterwards the lane stands at the part ``tau`` of the interval after sample ``k``; its ``side`` is 0 where the
-    block rests.
+    block rests. ``tally`` is the OUTCOME of its case so far.
     """
     k, side = lane.k[i], lane.side[i]
     _restore_extremes(lane, i)
@@ -253,24 +283,7 @@ def _take_contact_event(lane, i, tally, ensemble, motions):
     else:
         tau -= lane.was_left[i] * (1.0 - t)
         tally.impacts += 1
-        if lane.counted_sample[i] != k:
-            lane.counted_sample[i] = k
-            lane.contact_events[i] = 0
-        lane.contact_events[i] += 1
-        # from the pivot there to the other one, at rotation zero
-        there = _pivot(lane, i, side, ensemble)
-        w = block_impact(there, w)
-        side = -side
-        here = _pivot(lane, i, side, ensemble)
-        psi = here.alpha
-        factor = lane.factor[i]
-        ahead = Ahead(
-            motions.samples, motions.vertical, factor, lane.last[i], k, tau, 1.0
-        )
-        # it hardly comes off, meets too often, or its impacts are sure to end
-        still = w > -1e-12 or lane.contact_events[i] > MAX_CONTACT_EVENTS_PER_STEP
-        if still or block_dies_out(-w, side, here, there, ahead):
-            side = 0
+        side, psi, w = _after_impact(lane, i, tau, w, ensemble, motions)
     if tau >= 1.0 - 1e-13:
         lane.k[i] = k + 1
         tau = 0.0
@@ -279,8 +292,32 @@ def _take_contact_event(lane, i, tally, ensemble, motions):
 
 
 @inlined_kernel
+def _after_impact(lane, i, tau, w, ensemble, motions):
+    """Side, ψ and ψ' [1/sample] of lane i after an impact at the part ``tau`` of its sample, at the rate ``w``.
+
+    The block goes from its pivot to the other one, at rotation zero. The side is 0 where it rests from then on: it
+    hardly comes off, meets too often within a sample, or its impacts are sure to end (``block_dies_out``).
+    """
+    k, side, factor = lane.k[i], lane.side[i], lane.factor[i]
+    if lane.counted_sample[i] != k:
+        lane.counted_sample[i] = k
+        lane.contact_events[i] = 0
+    lane.contact_events[i] += 1
+    there = _pivot(lane, i, side, ensemble)
+    w = block_impact(there, w)
+    side = -side
+    here = _pivot(lane, i, side, ensemble)
+    psi = here.alpha
+    ahead = Ahead(motions.samples, motions.vertical, factor, lane.last[i], k, tau, 1.0)
+    still = w > -1e-12 or lane.contact_events[i] > MAX_CONTACT_EVENTS_PER_STEP
+    if still or block_dies_out(-w, side, here, there, ahead):
+        side = 0
+    return side, psi, w
+
+
+@inlined_kernel
 def _rates_of(lane, i):
-    """Taylor coefficients 0 to 6 of ψ' over a lane's step."""
+    """Taylor coefficients 0 to 6 of ψ' per step, over the step of lane i."""
     rows = lane.rates
     w = lane.was_omega[i] * lane.was_left[i]
     return w, rows[0, i], rows[1, i], rows[2, i], rows[3, i], rows[4, i], rows[5, i]
@@ -288,7 +325,10 @@ def _rates_of(lane, i):
 
 @kernel
 def _find_impacts(lane, stops):
-    """Find the impacts of all lanes before any goes through one, as a processor works on several at once."""
+    """Find when ψ reaches the critical angle in lanes that end beyond it; ``stops`` has a bit for each that stops.
+
+    All are found before any goes through its impact, as a processor works on several at once.
+    """
     while stops != 0:
         i = lowest_bit(stops)
         stops &= stops - 1
@@ -300,7 +340,14 @@ def _find_impacts(lane, stops):
 
 @inlined_kernel
 def _contact_event(lane, i, tally):
-    """Time of the next impact in the step, or NEVER; ψ and ψ' then or at the end; whether it never left."""
+    """Find the next impact in the step of lane i, and note in its ``tally`` the extremes on the way.
+
+    Returns
+    -------
+    t : time of the impact in the step [-], NEVER if there is none
+    psi, omega : ψ [rad] and ψ' [rad per sample] just before it, or at the end of the step
+    stays : whether the block stays on the ground from the beginning of the step
+    """
     psi = lane.was_psi[i]
     left = lane.was_left[i]
     angle = lane.angle[i]
@@ -339,8 +386,12 @@ def _contact_event(lane, i, tally):
 
 @inlined_kernel
 def _flight(gap, rates, end):
-    """Time at which ψ reaches the angle of impact, passed by the time ``end``; NEVER if it stays there."""
+    """Time in the step at which ψ reaches the critical angle, passed by the time ``end``; NEVER if it stays there.
+
+    ``gap`` is ψ less that angle as the step begins, ``rates`` the Taylor coefficients of ψ' per step.
+    """
     _, w1, w2, w3, w4, w5, w6 = rates
+    # of the opening angle, -gap less the integral of ψ'
     series = (
         -gap,
         -rates[0],
@@ -357,7 +408,10 @@ def _flight(gap, rates, end):
 
 @inlined_kernel
 def _note(tally, psi, w, angle, kappa):
-    """Keep the largest rotation and speed and the closest approach to balance."""
+    """Take ψ [rad] and its rate ``w`` [rad per sample] into the extremes of a ``tally``.
+
+    The distance from balance is √(ψ² + w²/κ) over the critical ``angle``.
+    """
     tally.peak2 = max(tally.peak2, 1.0 - psi / angle)
     tally.fast = max(tally.fast, abs(w))
     if abs(psi) < tally.unstable_distance * angle:
@@ -371,7 +425,10 @@ def _note(tally, psi, w, angle, kappa):
 
 @kernel
 def _next_case(lane, i, tally, ensemble, motions, outcomes):
-    """Take a lane through rest and the ends of motions, and through as many cases as end there."""
+    """Take a lane through rest and the ends of motions until it rocks, or no case is left (``case`` -1).
+
+    A case that ends on the way, at rest or fallen, is written into ``outcomes``, and the lane takes the next one.
+    """
     while True:
         if lane.case[i] >= 0:
             _rise(lane, i, ensemble, motions)
@@ -387,20 +444,19 @@ def _next_case(lane, i, tally, ensemble, motions, outcomes):
             return
         _take_up(lane, i, number, ensemble, motions)
         tally.fallen, tally.certain, tally.impacts = 0, 0, 0
-        tally.peak1, tally.peak2, tally.fast, tally.unstable_distance = (
-            0.0,
-            0.0,
-            0.0,
-            math.inf,
-        )
+        tally.peak1 = 0.0
+        tally.peak2 = 0.0
+        tally.fast = 0.0
+        tally.unstable_distance = math.inf
 
 
 @inlined_kernel
 def _rise(lane, i, ensemble, motions):
-    """Take a block at rest to the instant at which the ground pushes it over, if it does."""
+    """Take the block of lane i, if it rests, to the instant at which the ground lifts it, if it does."""
     k, last, factor = lane.k[i], lane.last[i], lane.factor[i]
     if lane.fell[i] != 0 or lane.side[i] != 0 or k >= last or factor == 0.0:
         return
+    # accelerations over g between which the block rests: tan θc of either pivot
     interval = -_pivot(lane, i, 1, ensemble).tan, _pivot(lane, i, -1, ensemble).tan
     k, tau, ground, _ = cases.next_uplift(
         motions, k, lane.tau[i], last, factor, interval
@@ -414,7 +470,11 @@ def _rise(lane, i, ensemble, motions):
 
 @kernel
 def _falls_freely(lane, i, tally, ensemble):
-    """Whether the block falls once the ground is still; every speed follows from energy."""
+    """Whether the block of lane i falls once the ground is still, with extremes noted in its ``tally``.
+
+    Every speed follows from the energy ψ'²/2 + κ cos ψ, which only impacts change: the block falls where it passes
+    balance (energy ≥ κ, or ψ ≤ 0 and no speed back), and never once neither pivot can be left to beyond balance.
+    """
     psi, w, side = lane.psi[i], lane.omega[i], lane.side[i]
     for _ in range(64):
         here = _pivot(lane, i, side, ensemble)
@@ -444,7 +504,7 @@ def _falls_freely(lane, i, tally, ensemble):
 
 @inlined_kernel
 def _put_down(lane, i, tally, outcome):
-    """Write down what remains of a lane's case."""
+    """Write the outcome (OUTCOME) of the case in lane i from its ``tally`` and the lane's extremes."""
     fell = lane.fell[i] != 0
     outcome.fallen = 2 if fell else 0
     outcome.certain = lane.k[i] - lane.first[i] if fell else 0
@@ -457,7 +517,7 @@ def _put_down(lane, i, tally, outcome):
 
 @inlined_kernel
 def _take_up(lane, i, number, ensemble, motions):
-    """Begin a case in a lane, at rest."""
+    """Begin the case of a ``number`` in lane i, at rest at the first sample of its motion."""
     body, motion, scale = cases.place_of(number, ensemble)
     lane.case[i], lane.body[i], lane.motion[i] = number, body, motion
     lane.low[i], lane.fast[i], lane.near[i] = 1.0, 0.0, math.inf
@@ -472,7 +532,11 @@ def _take_up(lane, i, number, ensemble, motions):
 
 @inlined_kernel
 def _place(lane, i, ensemble, motions):
-    """Place what a lane rocks on with; a lane without a case stands still at a harmless place."""
+    """Fill what lane i needs for the rest of its sample from its case, side, sample ``k`` and ``tau``.
+
+    That is the ground, the weight, the constants of its pivot, and the bounds of what is ahead. A lane without a
+    case stands still at a harmless place.
+    """
     if lane.case[i] < 0:
         lane.k[i], lane.last[i], lane.part_left[i], lane.angle[i] = 0, 0, 1.0, 1.0
         lane.psi[i], lane.omega[i], lane.kappa[i] = 0.0, 0.0, 0.0
@@ -493,10 +557,8 @@ def _place(lane, i, ensemble, motions):
     lane.angle[i], lane.kappa[i] = pivot.alpha, pivot.swing
     lane.per_angle[i], lane.per_speed[i] = pivot.per_alpha, pivot.per_swing
     # largest A that can still push the block on this pivot back down
-    most, least = (
-        motions.ahead_high[k // cases.BLOCK],
-        motions.ahead_low[k // cases.BLOCK],
-    )
+    most = motions.ahead_high[k // cases.BLOCK]
+    least = motions.ahead_low[k // cases.BLOCK]
     bound = max(max(0.0, factor * most * side), factor * least * side)
     light, heavy = cases.weights_ahead(motions, k, factor)
     lane.bound[i], lane.heavy[i] = bound, heavy

@@ -76,20 +76,20 @@ class Ensemble(NamedTuple):
 
 @inlined_kernel
 def place_of(number, ensemble):
-    """Body, motion and scale of the case of a number."""
+    """Numbers of body, motion and scale of the case of a ``number``, the scale running fastest."""
     motions, scales = ensemble.factors.shape
     return number // (scales * motions), (number // scales) % motions, number % scales
 
 
 @inlined_kernel
 def weight_of(motions, k, factor):
-    """Gravity at a sample over that of a ground that does not move vertically."""
+    """Gravity at sample k over that of a ground that does not move vertically [-]; ``factor``: on the motion."""
     return 1.0 + factor * motions.vertical[k] if motions.vertical.size > 0 else 1.0
 
 
 @inlined_kernel
 def weights_ahead(motions, k, factor):
-    """Least and largest gravity, over that of a ground that does not move vertically, from a sample on."""
+    """Least and largest gravity from the BLOCK of sample k on, over that of a level ground [-]."""
     if motions.vertical.size == 0:
         return 1.0, 1.0
     first = factor * motions.upward_high[k // BLOCK]
@@ -99,10 +99,23 @@ def weights_ahead(motions, k, factor):
 
 @kernel
 def next_uplift(motions, k, tau, last, factor, interval):
-    """Sample and time within it at which a body at rest rises, and acceleration and weight then; -1 if it stays.
+    """Find when a body at rest is lifted: the acceleration over the weight leaves an interval (Kirkpatrick, 1927).
 
-    The time is ``tau`` after sample k; ``interval`` is (low, high), which holds 0, that the acceleration over the
-    weight has to leave (Kirkpatrick, 1927).
+    Samples that cannot be outside are skipped a BLOCK at a time. Within an interval between samples the
+    acceleration and the limits, in proportion to the weight, are linear, so the instant follows exactly.
+
+    Parameters
+    ----------
+    motions : a :class:`Motions`
+    k, tau : sample from which to look, and part of the interval after it that has passed [-]
+    last : last sample of the motion
+    factor : on the motion
+    interval : (low, high), which holds 0, in the unit of the samples times the factor
+
+    Returns
+    -------
+    Sample, part of the interval after it [-], acceleration times the factor, and weight [-]; the sample is -1 if
+    the body stays.
     """
     samples = motions.samples
     low, high = interval
@@ -114,11 +127,9 @@ def next_uplift(motions, k, tau, last, factor, interval):
         m = k + 1
         while True:
             # no limit of any later sample is nearer to zero than this
-            least_gravity_ratio, _ = weights_ahead(motions, m, factor)
-            least, most = (
-                low * least_gravity_ratio / factor,
-                high * least_gravity_ratio / factor,
-            )
+            least_weight, _ = weights_ahead(motions, m, factor)
+            least = low * least_weight / factor
+            most = high * least_weight / factor
             if factor < 0.0:
                 least, most = most, least
             m = _first_outside(motions, m, last, least, most)
@@ -140,7 +151,10 @@ def next_uplift(motions, k, tau, last, factor, interval):
 
 @kernel
 def _first_outside(motions, k, last, low, high):
-    """First sample after k, up to ``last``, outside [low, high]; -1 if there is none."""
+    """Number of the first sample after k, up to ``last``, outside [low, high]; -1 if there is none.
+
+    A BLOCK of samples whose extremes lie inside is passed at once.
+    """
     samples, highest, lowest = motions.samples, motions.highest, motions.lowest
     m = k + 1
     while m <= last:
@@ -159,7 +173,19 @@ def _first_outside(motions, k, last, low, high):
 
 @inlined_kernel
 def next_samples(lane, factor, lanes, motions):
-    """Give lanes at the end of a sample the next one; bits of those that stop, for an event or an end."""
+    """Give lanes that have reached the end of a sample the next one.
+
+    Parameters
+    ----------
+    lane : record of lanes, with rows ``k``, ``flag`` and ``last``
+    factor : of each lane, on the samples, shape (lanes,)
+    lanes : number of lanes
+    motions : a :class:`Motions`
+
+    Returns
+    -------
+    A bit for each lane that stops, for a contact event or the end of its motion.
+    """
     samples, vertical = motions.samples, motions.vertical
     stops = 0
     for i in range(lanes):

@@ -69,14 +69,20 @@ def _turned5(s, c, w):
 
 @inlined_kernel
 def times_gravity(gravity, now, before):
-    """Coefficient of gravity (now, growth, whether it varies) × a series, of which two coefficients are given."""
+    """Coefficient k of gravity times a series, from the series' coefficients k (``now``) and k - 1 (``before``).
+
+    ``gravity``: its value as the step begins, what it grows by until its end, and whether it does.
+    """
     g, lift, varies = gravity
     return fma(lift, before, g * now) if varies else g * now
 
 
 @inlined_kernel
 def _block_torque(ground, weight, s, c):
-    """Newest coefficient of W sin ψ + A cos ψ, of the series of sine and cosine so far."""
+    """Newest coefficient of W sin ψ + A cos ψ, from the series ``s`` of the sine and ``c`` of the cosine so far.
+
+    ``ground``: A and its growth over the step; ``weight``: W, its growth and whether it varies.
+    """
     (a, rise), (u, lift, varies) = ground, weight
     if varies:
         return fma(u, s[-1], fma(a, c[-1], fma(lift, s[-2], rise * c[-2])))
@@ -89,7 +95,19 @@ def rates_of_one(turn, w, kappa, ground, weight):
 
     ψ'' = κ (W sin ψ + A cos ψ) with A = a + rise τ, W = u + lift τ and time in steps (Housner, 1963): a lone
     block with ψ = θc - |θ|, κ = p² h², A the ground acceleration over g, positive where it pushes the block back
-    down, and W gravity over g, 1 unless the ground moves vertically; ``weight`` as in ``times_gravity``.
+    down, and W gravity over g, 1 unless the ground moves vertically.
+
+    Parameters
+    ----------
+    turn : (s0, c0)
+    w : ψ' as the step begins [rad per step]
+    kappa : κ of the step's length h [-]
+    ground : (a, rise)
+    weight : (u, lift, whether it varies)
+
+    Returns
+    -------
+    The seven coefficients [rad per step].
     """
     s, c = (turn[0],), (turn[1],)
     rates = w, kappa * fma(ground[0], c[0], weight[0] * s[0])
@@ -132,7 +150,10 @@ def _square4(w):
 
 @inlined_kernel
 def _weight_torque(ground, gravity, x, y):
-    """Newest coefficient of g Y - a X, of the series X and Y so far."""
+    """Newest coefficient of g Y - a X, from the series ``x`` and ``y`` of X and Y so far (:func:`rates_of_two`).
+
+    ``ground``: a and its growth over the step; ``gravity`` as of :func:`times_gravity`.
+    """
     a, rise = ground
     return fma(-a, x[-1], fma(-rise, x[-2], times_gravity(gravity, y[-1], y[-2])))
 
@@ -143,6 +164,8 @@ def _torque1(torque, side, coupling, w):
 
     With the other's rate w that is ± D w² - (M12 - m₀) w': ``side`` is the sign, -1 for body 1 and 1 for body 2;
     ``coupling`` has the series of M12 and D. The part m₀ w' stands on the left side, in the mass matrix.
+    Coefficient n of w' is (n + 1) wₙ₊₁, so that coefficient k of (M12 - m₀) w' is Σ (n + 1) mₖ₋ₙ wₙ₊₁ for n = 0 to
+    k - 1; the terms with the newest rate, of both products, are joined in the last line.
     """
     m, d = coupling
     torque = fma(side * d[1], w[0] * w[0], torque)

@@ -110,7 +110,7 @@ NO_CASE, ONE_ROTATES, BOTH_ROTATE = -1, 0, 1  # what lane a case needs
 
 @inlined_kernel
 def lane_of(case):
-    """Which lanes a case needs."""
+    """Kind of lane that a case needs: ONE_ROTATES, BOTH_ROTATE, or NO_CASE."""
     if case.number < 0:
         return NO_CASE
     return BOTH_ROTATE if case.c1 != 0 and case.c2 != 0 else ONE_ROTATES
@@ -124,7 +124,11 @@ def rocks_on(case):
 
 @kernel
 def next_case(case, ensemble, motions, worker, outcomes):
-    """Take a slot through rest and the ends of motions, and through as many cases as end there."""
+    """Take the case of a slot through rest and the end of its motion until it rocks, or no case is left.
+
+    A case that ends on the way is written into ``outcomes``, and the slot takes the next one; ``case.number`` is
+    -1 where there is none.
+    """
     while True:
         if case.number >= 0:
             if case.fallen == 0 and _rocks_again(case, ensemble, motions, worker.state):
@@ -139,12 +143,17 @@ def next_case(case, ensemble, motions, worker, outcomes):
 
 @kernel
 def _rocks_again(case, ensemble, motions, state):
-    """Take a case that has not fallen through its rest, if it rests, and return whether it then rocks on."""
+    """Take a case that has not fallen to where it rocks next, and return whether it does before it ends.
+
+    ``state`` is a record STATE to work in.
+    """
     body = ensemble.bodies[case.body]
     if case.c1 == 0 and case.c2 == 0:
+        # at rest, until the ground lifts it
         return _lift_off(case, body, motions, state)
     if case.k < case.last:
         return True
+    # free rocking goes on for as long as its energy may overturn the body
     to_state(case, state)
     return case.k < case.free_last and not _is_safe(body, state, case.barrier)
 
@@ -168,7 +177,7 @@ def _lift_off(case, body, motions, state):
 
 @kernel
 def _is_safe(body, state, least):
-    """Whether nothing can fall once the ground is still: energy cannot grow, and is less than ``least``."""
+    """Whether nothing can fall once the ground is still: energy cannot grow, and is less than ``least`` [J]."""
     if (
         equations.kinetic_energy(body, state) + equations.potential_energy(body, state)
         >= least
@@ -183,7 +192,7 @@ def _is_safe(body, state, least):
 
 @inlined_kernel
 def _put_down(case, outcome):
-    """Write down what remains of a case."""
+    """Write what remains of a case into a record OUTCOME."""
     outcome.fallen = case.fallen
     outcome.certain = case.k - case.first
     outcome.peak1, outcome.peak2 = case.peak1, case.peak2
@@ -193,7 +202,7 @@ def _put_down(case, outcome):
 
 @kernel
 def _take_up(case, number, ensemble, motions, worker):
-    """Begin a case in a slot, at rest."""
+    """Begin the case of a ``number`` in a slot, at rest; fill its body's constants, unless they are there."""
     body, motion, scale = lanes.place_of(number, ensemble)
     h = ensemble.intervals[body, motion]
     slot = case.slot
@@ -218,20 +227,14 @@ def _take_up(case, number, ensemble, motions, worker):
     case.first, case.last = motions.offsets[sampled], motions.lasts[sampled]
     case.free_last = case.last + ensemble.free[body, motion]
     case.k, case.tau = case.first, 0.0
-    case.c1, case.c2, case.fallen, case.counted_sample, case.impacts, case.given_way = (
-        0,
-        0,
-        0,
-        -1,
-        0,
-        0,
-    )
+    case.c1, case.c2, case.fallen, case.counted_sample = 0, 0, 0, -1
+    case.impacts, case.given_way = 0, 0
     case.peak1, case.peak2, case.fast, case.near = 0.0, 0.0, 0.0, math.inf
 
 
 @kernel
 def to_state(case, state):
-    """Write a case's state with rates per second."""
+    """Write a case's state into a record STATE, with rates per second."""
     h = case.interval
     state.c1, state.c2, state.ground = case.c1, case.c2, case.ground
     state.gravity = case.weight * case.gravity
@@ -241,10 +244,15 @@ def to_state(case, state):
 
 @inlined_kernel
 def _ahead(case, motions):
-    """The ground from the case's instant on."""
-    factor, interval = case.factor, case.interval
+    """Return the ground from the case's instant on, a ``chatter.Ahead``."""
     return chatter.Ahead(
-        motions.samples, motions.vertical, factor, case.last, case.k, case.tau, interval
+        samples=motions.samples,
+        vertical=motions.vertical,
+        factor=case.factor,
+        last=case.last,
+        k=case.k,
+        tau=case.tau,
+        dt=case.interval,
     )
 
 
@@ -255,7 +263,7 @@ def _ahead(case, motions):
 def contact_event_of_one(i, case, worker, ensemble, motions, g):
     """Take a case in lane i of those of one rotation through its contact event, or to the step's end.
 
-    Returned is whether ground and interface close and ``general_impact`` has to say what comes of it.
+    Returned is whether ground and interface close and ``general_impact`` has still to say what comes of it.
     """
     lane, series = worker.one, worker.series[i]
     if lane.flag[i] == lanes.RELEASE and lane.has_before[i] == 1.0:
@@ -293,7 +301,7 @@ def contact_event_of_one(i, case, worker, ensemble, motions, g):
 
 @inlined_kernel
 def _move_one(i, case, lane, series, at):
-    """Move a case in lane i of those of one rotation to an instant of its step, with its extremes so far."""
+    """Move a case in lane i of those of one rotation to the time ``at`` [-] of its step, with extremes so far."""
     theta = value(series.one.angle, at)
     omega = slope(series.one.angle, at) / lane.was_left[i]
     peak, case.fast, case.near = stack_one.nearest(lane, i, theta, omega)
@@ -309,7 +317,10 @@ def _move_one(i, case, lane, series, at):
 
 @kernel
 def find_contact_events_of_two(stops, worker):
-    """Find contact events of lanes of two rotations before any goes through one (``block._find_impacts``)."""
+    """Find contact events of lanes of two rotations before any goes through one (``block._find_impacts``).
+
+    ``stops`` has a bit for each lane that stops.
+    """
     lane = worker.two
     while stops != 0:
         i = lowest_bit(stops)
@@ -324,19 +335,24 @@ def find_contact_events_of_two(stops, worker):
 
 @kernel
 def contact_event_of_two(i, case, worker, ensemble, motions, g):
-    """Take a case in lane i of those of two rotations through the contact event found; see the one above."""
+    """Take a case in lane i of those of two rotations through the contact event found, or to the step's end.
+
+    Returned is as of :func:`contact_event_of_one`.
+    """
     lane, series = worker.two, worker.series[i]
     left = lane.was_left[i]
     span = stack_two.span_of(left, lane.part[i])
     when, closes1, closes2 = lane.when[i], lane.closes1[i] != 0, lane.closes2[i] != 0
     at = min(1.0, when)
-    t1, w1 = value(series.one.angle, at), slope(series.one.angle, at) / span
-    t2, w2 = value(series.two.angle, at), slope(series.two.angle, at) / span
+    one, two = series.one.angle, series.two.angle
+    theta1, omega1 = value(one, at), slope(one, at) / span
+    theta2, omega2 = value(two, at), slope(two, at) / span
     case.peak1, case.peak2, case.fast, case.near = stack_two.nearest(
-        lane, i, (t1, w1, t2, w2)
+        lane, i, (theta1, omega1, theta2, omega2)
     )
     case.tau = 1.0 - left + span * at
-    case.theta1, case.omega1, case.theta2, case.omega2 = t1, w1, t2, w2
+    case.theta1, case.omega1 = theta1, omega1
+    case.theta2, case.omega2 = theta2, omega2
     if when > 1.0:
         return False, False
     rise = lane.ground_end[i] - lane.was_ground[i]
@@ -361,7 +377,10 @@ def contact_event_of_two(i, case, worker, ensemble, motions, g):
 
 @kernel
 def general_impact(case, worker, body, closes, motions):
-    """Take a case through the closing of contacts as single histories do."""
+    """Take a case through the closing of contacts as single histories do (``single.resolve_impact``).
+
+    ``closes``: whether ground and interface close.
+    """
     state = worker.state
     to_state(case, state)
     ahead = _ahead(case, motions)
@@ -377,53 +396,70 @@ def general_impact(case, worker, body, closes, motions):
 
 @inlined_kernel
 def _impact_alone(case, worker, body, g, motions):
-    """Take what rocks alone through its landing by the constants; whether that was possible."""
-    slot = case.slot
-    impact_constants = worker.impacts[slot, equations.number_of(case.c1, case.c2)]
-    n1, n2 = impact_constants.next1, impact_constants.next2
-    omega = abs(case.omega2)
-    v1, v2 = omega * impact_constants.after1, omega * impact_constants.after2
-    h = case.interval
+    """Take what rocks alone through its landing by its record IMPACT; return whether that was possible.
+
+    The outcome at unit speed is scaled by the speed. Where only one of two contacts that come off does so too
+    slowly nothing is changed, and ``general_impact`` has to do it. Rates are per sample; ``g``: gravity [m/s²].
+    """
+    landing = worker.impacts[case.slot, equations.number_of(case.c1, case.c2)]
+    # both blocks turn as one, or the statue alone: its rate is that of what rocks
+    speed = abs(case.omega2)
+    v1, v2 = speed * landing.after1, speed * landing.after2
+    n1, n2 = landing.next1, landing.next2
     # a contact that comes off slower than this stays closed
-    slow = chatter.OUTCOME.closing_speed * h
+    slow = chatter.OUTCOME.closing_speed * case.interval
     slow1 = n1 != 0 and abs(v1) < slow
     slow2 = n2 != 0 and abs(v2 - v1) < slow
     rests = (n1 == 0 or slow1) and (n2 == 0 or slow2)
     if (slow1 or slow2) and not rests:
         return False
-    speed = max(abs(v1), abs(v2)) / h
-    restoring = worker.restoring[slot]
-    if not rests and speed < restoring.fastest:
-        ahead = _ahead(case, motions)
-        rests = chatter.dies_out(
-            speed,
-            impact_constants.fraction,
-            1.5,
-            restoring,
-            chatter.OUTCOME.drop,
-            ahead,
-        )
-    if rests:
+    if rests or _comes_to_rest(case, worker, landing.fraction, v1, v2, motions):
         n1, n2, v1, v2 = 0, 0, 0.0, 0.0
-    if n1 == 0 and n2 == 0:
-        settled = case.low * case.weight < case.ground < case.high * case.weight
-    elif n1 == 0 or n2 == 0:
-        constants = worker.ones[slot, equations.number_of(n1, n2)]
-        ground_and_weight = case.ground, case.weight
-        settled = stack_one.least_hold(constants, 0.0, v2, ground_and_weight, g) > 0.0
-    else:
-        settled = True
     case.c1, case.c2, case.omega1, case.omega2 = n1, n2, v1, v2
-    case.given_way += impact_constants.gives_way
-    if not settled:
+    case.given_way += landing.gives_way
+    if not _is_settled(case, worker, g):
         to_state(case, worker.state)
         case.c1, case.c2 = contact_states.settle(body, worker.state)
     return True
 
 
 @inlined_kernel
+def _comes_to_rest(case, worker, fraction, v1, v2, motions):
+    """Whether the impacts after a landing at zero rotation are sure to end at rest (``chatter.dies_out``).
+
+    ``fraction``: part of the speed that an impact leaves [-]; ``v1``, ``v2``: rates after it [rad per sample].
+    """
+    speed = max(abs(v1), abs(v2)) / case.interval
+    restoring = worker.restoring[case.slot]
+    if not speed < restoring.fastest:
+        return False
+    drop, ahead = chatter.OUTCOME.drop, _ahead(case, motions)
+    return chatter.dies_out(
+        speed, fraction, chatter.SAFETY_OF_STACKS, restoring, drop, ahead
+    )
+
+
+@inlined_kernel
+def _is_settled(case, worker, g):
+    """Whether forces keep the contacts of a case that has just landed closed, all that are: by its constants."""
+    if case.c1 == 0 and case.c2 == 0:
+        return case.low * case.weight < case.ground < case.high * case.weight
+    if case.c1 == 0 or case.c2 == 0:
+        constants = worker.ones[case.slot, equations.number_of(case.c1, case.c2)]
+        ground_and_weight = case.ground, case.weight
+        omega = case.omega2
+        return stack_one.least_hold(constants, 0.0, omega, ground_and_weight, g) > 0.0
+    return True
+
+
+@inlined_kernel
 def close_one(case, worker, ground, g, motions):
-    """Take two rocking blocks through the closing of one contact by the constants; whether that was possible."""
+    """Take two rocking blocks through the closing of one contact by their constants; return whether that works.
+
+    ``ground``: whether it is the ground's contact, not the interface's. The contact comes off on its other pivot,
+    or stays closed where its hops are sure to be short (``chatter.may_close``). Where it does not come off nothing
+    is changed, and ``general_impact`` has to do it.
+    """
     c1, c2, omega1, omega2 = case.c1, case.c2, case.omega1, case.omega2
     constants, number = worker.twos[case.slot], equations.number_of(c1, c2)
     before, products = constants[number], worker.impacts[case.slot, number]
@@ -434,6 +470,7 @@ def close_one(case, worker, ground, g, motions):
         v1, v2 = ground_impact(
             before, after, products.ground, (cosine, sine), omega1, omega2
         )
+        # of the closing contact: side, rates after and before; of the other: gap, and rate at which it closes
         side, off, old = n1, v1, omega1
         gap, toward = abs(case.theta2), c2 * (v1 - v2)
     else:
@@ -475,6 +512,7 @@ def _forced(case):
 @inlined_kernel
 def after_contact_event(case):
     """Take a case past its contact event, or past the end of its step, to the sample that it is in."""
+    # so many in one sample that time goes on whatever happens
     are_too_many = (
         case.counted_sample == case.k
         and case.contact_events > MAX_CONTACT_EVENTS_PER_STEP + 20
@@ -497,10 +535,8 @@ def after_contact_event(case):
 @inlined_kernel
 def place_one(i, case, worker, motions):
     """Place a case into lane i of those of one rotation."""
-    lane, constants = (
-        worker.one,
-        worker.ones[case.slot, equations.number_of(case.c1, case.c2)],
-    )
+    number = equations.number_of(case.c1, case.c2)
+    lane, constants = worker.one, worker.ones[case.slot, number]
     lane.gx[i], lane.gy[i] = constants.gx, constants.gy
     lane.per_angle[i], lane.per_speed[i] = constants.per_angle, constants.per_speed
     for n in range(stack_constants.HOLD):
@@ -518,27 +554,18 @@ def place_one(i, case, worker, motions):
 @inlined_kernel
 def place_two(i, case, worker, motions):
     """Place a case into lane i of those of two rotations."""
-    lane, two = (
-        worker.two,
-        worker.twos[case.slot, equations.number_of(case.c1, case.c2)],
-    )
-    lane.v1x[i], lane.v1y[i], lane.v2x[i], lane.v2y[i] = (
-        two.v1x,
-        two.v1y,
-        two.v2x,
-        two.v2y,
-    )
+    lane, number = worker.two, equations.number_of(case.c1, case.c2)
+    two = worker.twos[case.slot, number]
+    lane.v1x[i], lane.v1y[i] = two.v1x, two.v1y
+    lane.v2x[i], lane.v2y[i] = two.v2x, two.v2y
     lane.m11[i], lane.m22[i], lane.e[i], lane.f[i] = two.m11, two.m22, two.e, two.f
     lane.per_angle1[i], lane.per_angle2[i] = two.per_angle1, two.per_angle2
     lane.per_speed1[i], lane.per_speed2[i] = two.per_speed1, two.per_speed2
     lane.side1[i], lane.side2[i] = case.c1, case.c2
     lane.theta1[i], lane.omega1[i] = case.theta1, case.omega1
     lane.theta2[i], lane.omega2[i] = case.theta2, case.omega2
-    lane.factor[i], lane.part_left[i], lane.part[i] = (
-        case.factor,
-        1.0 - case.tau,
-        case.part,
-    )
+    lane.factor[i], lane.part[i] = case.factor, case.part
+    lane.part_left[i] = 1.0 - case.tau
     lane.ground[i], lane.ground_end[i] = _ground(case, motions.samples)
     lane.weight[i], lane.weight_end[i] = _weight(case, motions)
     lane.ratio1[i], lane.ratio2[i] = case.peak1, case.peak2
@@ -547,7 +574,7 @@ def place_two(i, case, worker, motions):
 
 @inlined_kernel
 def _weight(case, motions):
-    """Weight at the time of a case and at the end of its sample."""
+    """Weight [-] at the time of a case and at the end of its sample."""
     before = (
         lanes.weight_of(motions, case.k, case.factor) if case.k <= case.last else 1.0
     )
@@ -559,7 +586,7 @@ def _weight(case, motions):
 
 @inlined_kernel
 def _ground(case, samples):
-    """Acceleration of the ground at the time of a case and at the end of its sample."""
+    """Acceleration of the ground [m/s²] at the time of a case and at the end of its sample."""
     before = case.factor * samples[case.k] if case.k <= case.last else 0.0
     after = case.factor * samples[case.k + 1] if case.k < case.last else 0.0
     return before + case.tau * (after - before), after

@@ -59,7 +59,11 @@ IMPACT = np.dtype(
 
 @kernel
 def fill_constants(body, h, lanes_of_one, two, impacts, scratch):
-    """Fill the constants of the nine contact states of a body for a sampling interval h [s]."""
+    """Fill the constants of the nine contact states of a body for a sampling interval h [s].
+
+    ``lanes_of_one``, ``two``, ``impacts``: records ONE, TWO and IMPACT, shape (9,) each, by
+    ``equations.number_of``; ``scratch``: a STATE to work in.
+    """
     hh = h * h
     for c1 in (-1, 0, 1):
         for c2 in (-1, 0, 1):

@@ -110,7 +110,19 @@ def _moment(hold, i, turn, alpha, square, ground_and_weight):
 
 @inlined_kernel
 def _rates(g_over_inertia, turn, w, left, ground, weight):
-    """Taylor coefficients of θ' over the rest of a sample; ``ground`` is over -g, and ``weight`` as there."""
+    """Taylor coefficients 0 to 6 of θ' over the rest of a sample, by time in steps (``series.rates_of_one``).
+
+    θ'' = W (gx cos θ + gy sin θ) - (a/g) (gy cos θ - gx sin θ) is ψ'' of a lone block with other sine and cosine.
+
+    Parameters
+    ----------
+    g_over_inertia : gx, gy (``stack_constants.ONE``) [per sample²]
+    turn : sine and cosine of θ as the step begins
+    w : θ' then [rad per step]
+    left : length of the step [samples]
+    ground : acceleration of the ground then over -g, and what it grows by [-]
+    weight : W then, what it grows by, and whether it varies
+    """
     (gx, gy), (s, c) = g_over_inertia, turn
     return rates_of_one(
         (gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight
@@ -128,12 +140,18 @@ def advance(lane, g, upward):
 
 @inlined_kernel
 def _advance(lane, g, upward):
-    """Advance every lane and store everything in each: conditional stores cost many times as much."""
+    """Advance every lane by the rest of its sample, and store where that begins, where it ends, and its flag.
+
+    Everything is stored in every lane: conditional stores cost many times as much. Times are in samples, but for
+    ``turning`` and what follows from ``rates``, which are per step; ``g``: gravity [m/s²]; ``upward``: whether
+    weights vary.
+    """
     down = -1.0 / g
     for i in range(LANES):
         left = lane.part_left[i]
         theta, omega = lane.theta[i], lane.omega[i]
         a, a_end = lane.ground[i], lane.ground_end[i]
+        # from rates per step to rates per sample
         per = 1.0 / left
         # angular velocity per step
         turning = omega * left
@@ -197,7 +215,7 @@ def _keep_steps(lane, i, theta, omega):
 
 @inlined_kernel
 def take_series(lane, i, series):
-    """Copy the series of a lane's step out, and fill that of the gap."""
+    """Copy the Taylor coefficients of θ over the step of lane i into a record SERIES, and fill that of the gap."""
     angle, gap, side = series.one.angle, series.gap, lane.side[i]
     angle[0] = lane.was_theta[i]
     angle[1] = lane.was_omega[i] * lane.was_left[i]
@@ -209,7 +227,10 @@ def take_series(lane, i, series):
 
 @kernel
 def go_back(lane, i, g, upward):
-    """Put a lane back to where its last step began, and work its series out again, to the same bits."""
+    """Put lane i back to where its last step began, and work its series out again, to the same bits.
+
+    So the sample before is looked at again, in which its contact let go. ``g``, ``upward`` as of :func:`advance`.
+    """
     theta, omega, left = lane.before_theta[i], lane.before_omega[i], lane.before_left[i]
     end, a = lane.was_ground[i], lane.before_ground[i]
     lane.was_theta[i], lane.was_omega[i], lane.was_left[i] = theta, omega, left
@@ -232,7 +253,11 @@ def go_back(lane, i, g, upward):
 
 @inlined_kernel
 def next_contact_event(constants, lane, i, series, g):
-    """Time in the lane's step of its next contact event, or NEVER; whether the closed contact opens."""
+    """Find the next contact event in the step of lane i.
+
+    ``constants``: of its contact state (``stack_constants.ONE``); ``series``: from :func:`take_series`.
+    Returned are its time in the step [-], NEVER if there is none, and whether it is the closed contact that opens.
+    """
     if lane.flag[i] == CLOSES:
         when = roots.crossing_time(series.gap)
         omega = roots.slope(series.one.angle, when) / lane.was_left[i]
@@ -250,7 +275,7 @@ def next_contact_event(constants, lane, i, series, g):
 
 @inlined_kernel
 def ground_and_weight_at(lane, i, tau):
-    """Acceleration of the ground, and weight, in the lane's step."""
+    """Acceleration of the ground [m/s²], and weight [-], at the time ``tau`` [-] of the step of lane i."""
     ground, weight = lane.was_ground[i], lane.was_weight[i]
     return (
         ground + (lane.ground_end[i] - ground) * tau,
@@ -260,7 +285,11 @@ def ground_and_weight_at(lane, i, tau):
 
 @kernel
 def least_hold(constants, theta, omega, ground_and_weight, g):
-    """Least contact moment of the closed contact, negative if it has to pull."""
+    """Least contact moment of the closed contact [kg m² per sample²], negative where it would have to pull.
+
+    ``constants``: of the contact state (``stack_constants.ONE``); ``theta`` [rad], ``omega`` [rad per sample];
+    ``ground_and_weight`` as of :func:`_moment`.
+    """
     ground, weight = ground_and_weight
     turn = taylor.quick_sine_cosine(theta)
     s, c = turn
@@ -275,7 +304,7 @@ def least_hold(constants, theta, omega, ground_and_weight, g):
 
 @kernel
 def _release_time(constants, lane, i, series, end, g):
-    """Time up to ``end`` at which the closed contact lets go; NEVER if it holds."""
+    """Time up to ``end`` of the step of lane i [-] at which the closed contact lets go; NEVER if it stays."""
     angle, left = series.one.angle, lane.was_left[i]
     at_low = least_hold(
         constants, angle[0], angle[1] / left, ground_and_weight_at(lane, i, 0.0), g
@@ -306,12 +335,15 @@ def _release_time(constants, lane, i, series, end, g):
             g,
         )
         bracket = roots.narrowed(bracket, tau, hold)
-    return bracket[2]
+    return roots.end_of(bracket)
 
 
 @inlined_kernel
 def nearest(lane, i, theta, omega):
-    """Extremes of lane i up to θ, θ': largest θ/θcritical, |θ'|, and the least distance from balance squared."""
+    """Extremes of lane i up to θ [rad], θ' [rad per sample]: largest θ/θcritical and |θ'|, least distance squared.
+
+    The distance is from balance, in units of (θc, p θc).
+    """
     ratio = lane.per_angle[i] * theta
     near = (1.0 - ratio) * (1.0 - ratio) + lane.per_speed[i] * omega * omega
     return (

@@ -57,11 +57,12 @@ LANE = np.dtype(
 """The lanes: a row of LANES numbers for each quantity."""
 
 REMNANT = 1e-12  # part of a sample that is not worth a step of its own
+TOGETHER = 1e-13  # part of a step within which two contacts close together
 
 
 @inlined_kernel
 def span_of(left, part):
-    """Length of a step with so much of the sample left and so large a part of it allowed."""
+    """Length of a step [samples] with ``left`` of the sample to go and at most ``part`` of it allowed."""
     return left if left <= part + REMNANT else part
 
 
@@ -143,18 +144,20 @@ def _rates(lane, i, span, angles, turns, ground, gravity):
 def _flag(lane, i, begin, end):
     """Flag of a step of lane i: a contact CLOSES, NEARS (it may close and open again, or a body lies), or QUIET.
 
-    ``begin`` has angles and their first and second derivatives, ``end`` angles and first ones, by time in steps.
+    ``begin`` has angles and their first and second derivatives, ``end`` angles and first ones, by time in steps;
+    each is a pair, of pedestal and statue. The interface opens by the difference of both.
     """
-    (t1, t2), (w1, w2), (bend1, bend2) = begin
-    (n1, n2), (z1, z2) = end
+    (angle1, angle2), (turn1, turn2), (bend1, bend2) = begin
+    (end1, end2), (end_turn1, end_turn2) = end
     side1, side2 = lane.side1[i], lane.side2[i]
-    gap1, out1, out1_end = side1 * t1, side1 * w1, side1 * z1
-    gap2, out2, out2_end = side2 * (t2 - t1), side2 * (w2 - w1), side2 * (z2 - z1)
-    closes = (side1 * n1 < 0.0) | (side2 * (n2 - n1) < 0.0)
+    gap1, out1, out1_end = side1 * angle1, side1 * turn1, side1 * end_turn1
+    gap2, out2 = side2 * (angle2 - angle1), side2 * (turn2 - turn1)
+    out2_end = side2 * (end_turn2 - end_turn1)
+    closes = (side1 * end1 < 0.0) | (side2 * (end2 - end1) < 0.0)
     near = dips(gap1, out1, out1_end) | hops(gap1, out1, out1_end, side1 * bend1)
     near |= dips(gap2, out2, out2_end)
     near |= hops(gap2, out2, out2_end, side2 * (bend2 - bend1))
-    lies = (max(abs(n1), abs(n2)) >= HALF_TURN) | (abs(n2 - n1) >= HALF_TURN)
+    lies = (max(abs(end1), abs(end2)) >= HALF_TURN) | (abs(end2 - end1) >= HALF_TURN)
     flag = CLOSES if closes else QUIET
     return NEARS if near | lies else flag
 
@@ -179,7 +182,7 @@ def _keep_extremes(lane, i, angles, velocities):
 
 @inlined_kernel
 def take_series(lane, i, series):
-    """Copy the series of a lane's step out."""
+    """Copy the Taylor coefficients of both angles over the step of lane i into a record SERIES."""
     first, two = series.one.angle, series.two.angle
     span = span_of(lane.was_left[i], lane.part[i])
     first[0], first[1] = lane.was_theta1[i], lane.was_omega1[i] * span
@@ -191,9 +194,14 @@ def take_series(lane, i, series):
 
 @inlined_kernel
 def next_contact_event(c1, c2, flag, series):
-    """Time in a step of its first closing, NEVER if there is none; whether ground and interface close."""
+    """Find the first closing in a step: its time [-], NEVER if none, and whether ground and interface close.
+
+    ``c1``, ``c2``: contact states; ``flag``: of the step; ``series``: of its angles.
+    """
     if flag != CLOSES:
+        # a gap may dip below zero and come back
         return first_closing(c1, c2, series)
+    # a gap is negative at the end, so that it has one root to be found
     when1 = NEVER
     when2 = NEVER
     if fill_gap(series, GROUND, c1) < 0.0:
@@ -201,7 +209,7 @@ def next_contact_event(c1, c2, flag, series):
     if fill_gap(series, INTERFACE, c2) < 0.0:
         when2 = crossing_time(series.gap)
     when = min(when1, when2)
-    return when, when1 <= when + 1e-13, when2 <= when + 1e-13
+    return when, when1 <= when + TOGETHER, when2 <= when + TOGETHER
 
 
 @inlined_kernel
