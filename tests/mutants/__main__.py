@@ -82,6 +82,7 @@ WORDS_ALONE = {
     # words, pages and figures are not statistics
     *("words.py", "page.py", "gallery.py", "assumed.py", "commands.py", "export.py"),
     *("writing.py", "contents.py", "_describe.py", "response_figure.py", "__init__.py"),
+    *("form.py", "build.py", "page_list.py"),
 }
 
 

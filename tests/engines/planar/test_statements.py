@@ -1,0 +1,618 @@
+"""What the kernels say of a column in one state, beside Newton's and Euler's equations and plain geometry.
+
+Kernels are called one by one, as plain Python. Motion at a contact is the change of a corner's place over the face
+(or of an edge's under the base) as the bodies go on by their velocities and accelerations, by differences.
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from ...mutants.plain import plain_library
+from ...oracle.standing import StandingBody, standing, turn
+from .cases import G, random_column, with_contacts
+
+with plain_library():
+    from rockfrag.engines.planar import bonds, solve, step, support, ties, walls
+    from rockfrag.engines.planar import impact as impacts
+    from rockfrag.engines.planar.records import posed, system_record, working_memory
+    from rockfrag.engines.planar.search import Trial, prepare, try_mode
+    from rockfrag.system import BilinearIsolator, Block, Tie, Wall, as_system, hold
+
+H = 1e-4  # step of differences [s]
+RIGHT, UP = 1.7, -0.8  # accelerations of the ground [m/s²]
+
+
+def plain(record):
+    """A record whose fields are attributes."""
+    return np.array([record]).view(np.recarray)[0]
+
+
+@dataclass
+class State:
+    """A column in some state and mode: its records and its bodies as they stand."""
+
+    p: np.record
+    w: np.record
+    bodies: list[StandingBody]
+    over: dict[tuple[int, int], bool]  # whether a corner is over its face
+
+    @property
+    def count(self) -> int:
+        return len(self.bodies)
+
+    @property
+    def masses(self) -> np.ndarray:
+        """Of each coordinate, shape (n, 3)."""
+        return np.array([[b.mass, b.mass, b.inertia] for b in self.bodies])
+
+    def closed(self) -> list[tuple[int, int]]:
+        """Closed ends as (contact, end)."""
+        ends = itertools.product(range(self.count), (0, 1))
+        return [(k, end) for k, end in ends if self.w.closed[k, end]]
+
+    def first(self, k: int) -> int:
+        """First closed end of a contact."""
+        return 0 if self.w.closed[k, 0] else 1
+
+
+def rows(flat: np.ndarray, count: int) -> np.ndarray:
+    """The coordinates of some bodies, shape (n, 3)."""
+    return np.array(flat[: 3 * count]).reshape(count, 3)
+
+
+def sight(state: State, q: np.ndarray, k: int, end: int) -> np.ndarray:
+    """Place along and across the face (or the base, where the corner is beyond its edge), and axes and point."""
+    body = state.bodies[k]
+    corner = q[k, :2] + turn(q[k, 2]) @ body.corners[end]
+    if k == 0:
+        return np.array([*corner, 1.0, 0.0, 0.0, 1.0, *corner])
+    below = state.bodies[k - 1]
+    edge = q[k - 1, :2] + turn(q[k - 1, 2]) @ below.edges[end]
+    over = state.over[k, end]
+    angle = q[k - 1, 2] + below.face if over else q[k, 2] + body.base
+    tangent, normal = turn(angle).T
+    way = corner - edge
+    return np.array(
+        [way @ tangent, way @ normal, *tangent, *normal, *(corner if over else edge)]
+    )
+
+
+def rates(state: State, q, v, a, k: int, end: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rates of the places along and across, and the rates of these."""
+    before, now, after = (
+        sight(state, q + v * h + a * h * h / 2, k, end)[:2] for h in (-H, 0.0, H)
+    )
+    return (after - before) / (2 * H), (after - 2 * now + before) / H**2
+
+
+def drawn(rng: np.random.Generator, impact: bool, stands: int) -> State:
+    """Draw a column of which the lowest bodies stand, in a mode of which each contact that is shut stays level."""
+    n = int(rng.integers(max(1, stands), 5))
+    mus = rng.uniform(0.1, 1.0, n).tolist()
+    column = random_column(rng, n)
+    system = with_contacts(column, mus)
+    p, w = plain(system_record(system, G)), plain(working_memory())
+    bodies = standing(system)
+    theta, omega = np.zeros(n), np.zeros(n)
+    w.drive[:] = -1
+    modes = []
+    for k in range(n):
+        ends = (
+            3 if k < stands else int(rng.choice([0, 1, 2, 3], p=[0.15, 0.3, 0.3, 0.25]))
+        )
+        modes.append(ends)
+        w.closed[k] = ends & 1, ends >> 1
+        if ends and k >= stands:
+            w.slides[k] = rng.choice([-1, 0, 1])
+        below = (theta[k - 1], omega[k - 1]) if k else (0.0, 0.0)
+        if ends == 3:
+            theta[k], omega[k] = below
+        else:
+            side = {1: -1, 2: 1}.get(ends, rng.choice([-1, 1]))
+            theta[k] = below[0] + side * rng.uniform(0.01, 0.3)
+            omega[k] = rng.normal()
+    flat, rate = posed(p, theta.tolist(), omega.tolist())
+    q, v = rows(flat, n), rows(rate, n)
+    # what slides has slid, some of it beyond the edge, and goes on; what is open is somewhere
+    for k in range(stands, n):
+        shift = rng.uniform(-0.1, 0.1, 2) * (w.slides[k] != 0 or modes[k] == 0)
+        if k:
+            shift[0] += 2.2 * p.half[k] * rng.choice([-1, 0, 1]) * (modes[k] in (1, 2))
+            tangent = turn(q[k - 1, 2] + bodies[k - 1].face)[:, 0]
+        else:
+            tangent = np.array([1.0, 0.0])
+        q[k:, :2] += shift[0] * tangent
+        if modes[k] != 3:
+            v[k, :2] += rng.normal(0, 0.5, 2)
+    w.q[: 3 * n], w.v[: 3 * n] = q.ravel(), v.ravel()
+    solve.look_at(p, w, w.q)
+    over = {}
+    for k in range(n):
+        for end in (0, 1):
+            w.kind[k, end] = solve.end_of(p, w, w.q, k, end, -1)[6]
+            over[k, end] = bool(w.kind[k, end] == 1)
+    if impact:
+        w.v[: 3 * n] = rng.normal(0, 1, 3 * n)
+    return State(p, w, bodies, over)
+
+
+def pushed(state: State) -> np.ndarray:
+    """Forces and moments of the contacts on each body, with those that the kernels have left, shape (n, 3)."""
+    w, q = state.w, rows(state.w.q, state.count)
+    total = np.zeros((state.count, 3))
+    for k in range(state.count):
+        for end in (0, 1):
+            seen = sight(state, q, k, end)
+            force = w.normal[k, end] * seen[4:6]
+            if w.slides[k] != 0:
+                # each end rubs by what it is pushed
+                rubs = w.slides[k] * state.p.kinetic[k]
+                force = force - rubs * w.normal[k, end] * seen[2:4]
+            elif w.closed[k].any() and end == state.first(k):
+                force = force + w.shear[k] * seen[2:4]
+            for body, sign in ((k, 1), (k - 1, -1)):
+                if body >= 0:
+                    arm = seen[6:8] - q[body, :2]
+                    # clockwise
+                    moment = force[0] * arm[1] - force[1] * arm[0]
+                    total[body] += sign * np.array([*force, moment])
+    return total
+
+
+def test_ends_are_where_geometry_has_them():
+    rng, kinds = np.random.default_rng(1), set()
+    for _ in range(40):
+        state = drawn(rng, False, 0)
+        p, w, q = state.p, state.w, rows(state.w.q, state.count)
+        for k in range(state.count):
+            for end in (0, 1):
+                x, y, tx, ty, gap, beyond, kind = solve.end_of(p, w, w.q, k, end, -1)
+                _, across, *axes, px, py = sight(state, q, k, end)
+                assert (x, y) == pytest.approx((px, py), abs=1e-12)
+                assert (tx, ty, -ty, tx) == pytest.approx(axes, abs=1e-12)
+                assert gap == pytest.approx(across, abs=1e-12)
+                kinds.add(kind)
+                if k == 0:
+                    assert beyond == -math.inf
+                    continue
+                state.over[k, end] = True
+                reach = (2 * end - 1) * sight(state, q, k, end)[0]
+                state.over[k, end] = bool(kind == 1)
+                assert beyond == pytest.approx(reach, abs=1e-12)
+                assert (kind == 1) == (beyond <= 1e-9 * p.size)
+    assert kinds == {0, 1}
+
+
+@pytest.mark.parametrize("stands", [0, 1, 2])
+def test_a_motion_keeps_its_mode_and_obeys_newton_and_euler(stands):
+    rng, seen = np.random.default_rng(2 + stands), set()
+    for _ in range(60):
+        state = drawn(rng, False, stands)
+        p, w, n = state.p, state.w, state.count
+        if not solve.solve_motion(p, w, w.q, w.v, RIGHT, UP):
+            continue
+        q, v, a = (rows(each, n) for each in (w.q, w.v, w.out))
+        assert np.abs(a[:stands]).max(initial=0.0) < 1e-12
+        net = state.masses * (a + np.array([RIGHT, UP + G, 0.0]))
+        unit = np.abs(net).max()
+        assert pushed(state) == pytest.approx(net, abs=1e-9 * unit)
+        for k in range(n):
+            if not w.closed[k].any():
+                assert not w.normal[k].any() and w.shear[k] == 0.0
+                continue
+            seen.add(
+                (
+                    min(k, 1),
+                    *w.closed[k].tolist(),
+                    abs(int(w.slides[k])),
+                    state.over[k, state.first(k)],
+                )
+            )
+            for end in np.flatnonzero(w.closed[k]).tolist():
+                _, (along, across) = rates(state, q, v, a, k, end)
+                small = 1e-5 * (1 + np.abs(a).max() + np.square(v).max())
+                assert abs(across) < small
+                if w.slides[k] == 0 and end == state.first(k):
+                    assert abs(along) < small
+            if w.slides[k] != 0:
+                rubs = -w.slides[k] * p.kinetic[k] * w.normal[k].sum()
+                assert w.shear[k] == pytest.approx(rubs, abs=1e-9 * unit)
+            assert not w.normal[k][w.closed[k] == 0].any()
+    assert len(seen) >= 6
+
+
+def test_an_impact_brings_about_what_is_asked_and_keeps_momentum():
+    rng, laws = np.random.default_rng(5), set()
+    for _ in range(120):
+        state = drawn(rng, True, 0)
+        p, w, n = state.p, state.w, state.count
+        w.back[:n] = rng.uniform(0, 0.3, (n, 2)) * rng.integers(0, 2)
+        driven, departs = None, 0.0
+        for k in range(n):
+            if w.closed[k].sum() != 1:
+                continue
+            law = rng.choice(["none", "place", "couple"])
+            laws.add(law)
+            if law == "place":
+                w.fraction[k, state.first(k)] = rng.uniform(0.05, 0.4)
+            if law == "couple" and driven is None:
+                driven, departs = k, rng.uniform(0.1, 1.0)
+                w.drive[k], w.depart[k] = 1 - state.first(k), departs
+        if not solve.solve_impact(p, w):
+            continue
+        q, before, after = (rows(each, n) for each in (w.q, w.v, w.out))
+        change = state.masses * (after - before)
+        missing = change - pushed(state)
+        unit = np.abs(change).max() + 1e-12
+        if driven is not None:
+            # a couple between two bodies: all else is explained
+            couple = missing[driven, 2]
+            missing[driven, 2] = 0.0
+            if driven:
+                assert missing[driven - 1, 2] == pytest.approx(-couple, abs=1e-9 * unit)
+                missing[driven - 1, 2] = 0.0
+        assert np.abs(missing).max() < 1e-9 * unit
+        still = np.zeros((n, 3))
+        for k in range(n):
+            closed = np.flatnonzero(w.closed[k]).tolist()
+            for end in closed:
+                (along, across), _ = rates(state, q, after, still, k, end)
+                assert across == pytest.approx(
+                    w.back[k, end], abs=1e-6 * (1 + np.abs(after).max())
+                )
+                if w.slides[k] == 0 and end == closed[0]:
+                    assert abs(along) < 1e-6 * (1 + np.abs(after).max())
+            if k == driven:
+                (_, across), _ = rates(state, q, after, still, k, int(w.drive[k]))
+                assert across == pytest.approx(
+                    departs, abs=1e-6 * (1 + np.abs(after).max())
+                )
+            if closed and w.slides[k] != 0:
+                rubs = -w.slides[k] * p.kinetic[k] * w.normal[k].sum()
+                assert w.shear[k] == pytest.approx(rubs, abs=1e-9 * unit)
+            if len(closed) == 1:
+                given, other = w.normal[k, closed[0]], w.normal[k, 1 - closed[0]]
+                assert other == pytest.approx(
+                    w.fraction[k, closed[0]] * given, abs=1e-9 * unit
+                )
+    assert laws == {"none", "place", "couple"}
+
+
+def test_the_nearest_velocities_are_those_of_the_least_change_of_energy():
+    rng, compared = np.random.default_rng(6), 0
+    for _ in range(40):
+        state = drawn(rng, True, 0)
+        p, w, n = state.p, state.w, state.count
+        wished = rng.normal(0, 1, w.v.size)
+        wished[3 * n :] = 0.0
+        if not solve.solve_nearest(p, w, wished):
+            continue
+        q, still = rows(w.q, n), np.zeros((n, 3))
+        jacobian = []
+        for k, end in state.closed():
+            moved = [
+                rates(state, q, unit.reshape(n, 3), still, k, end)[0]
+                for unit in np.eye(3 * n)
+            ]
+            jacobian.append([each[1] for each in moved])
+            if w.slides[k] == 0 and end == state.first(k):
+                jacobian.append([each[0] for each in moved])
+        expected = wished[: 3 * n].copy()
+        if jacobian:
+            j, inverse = np.array(jacobian), 1 / state.masses.ravel()
+            push = np.linalg.solve(j * inverse @ j.T, j @ expected)
+            expected -= inverse * (j.T @ push)
+        assert w.out[: 3 * n] == pytest.approx(expected, abs=1e-5)
+        compared += 1
+    assert compared > 30
+
+
+def test_margins_of_a_trial_are_forces_and_motions_over_their_units():
+    """A mode is as far from consistent as its worst force, friction or motion is, by the plain solution."""
+    rng, what = np.random.default_rng(7), set()
+    for _ in range(50):
+        state = drawn(rng, False, 0)
+        p, w, n = state.p, state.w, state.count
+        w.touching[:n] = w.closed[:n]
+        for k in range(n):
+            if w.closed[k].any():
+                w.touching[k] = 1 if w.closed[k].all() else w.touching[k]
+        w.moves[:n] = w.slides[:n]
+        w.along[:n] = w.against[:n] = p.static[:n]
+        prepare(p, w, Trial(RIGHT, UP, False, p.weight, G))
+        found = try_mode(p, w, Trial(RIGHT, UP, False, p.weight, G))
+        if not math.isfinite(found) or not solve.solve_motion(
+            p, w, w.q, w.v, RIGHT, UP
+        ):
+            continue
+        margins = [math.inf]
+        for k, end in state.closed():
+            stiff = max(1.0, p.kinetic[k]) if w.slides[k] else 1.0
+            margins.append(stiff * w.normal[k, end] / p.weight)
+        for k in range(n):
+            if w.closed[k].any() and w.slides[k] == 0:
+                left = p.static[k] * w.normal[k].sum() - abs(w.shear[k])
+                margins.append(left / (max(1.0, p.static[k]) * p.weight))
+        assert found == pytest.approx(
+            min(margins), abs=1e-9 * max(1.0, abs(min(margins)))
+        )
+        if math.isfinite(found):
+            what.add(int(w.flip[1]))
+    assert what == {0, 1, 2}
+
+
+def test_a_step_of_the_pair_is_of_order_five_and_its_books_close():
+    rng = np.random.default_rng(8)
+    state = drawn(rng, False, 0)
+    while state.count < 2 or not state.closed() or not state.w.slides.any():
+        state = drawn(rng, False, 0)
+    p, w, n = state.p, state.w, state.count
+    # closed ends neither part nor approach
+    assert solve.solve_nearest(p, w, w.v)
+    start = w.q.copy(), w.out.copy()
+    rise = np.array([150.0, -100.0])  # of the ground's accelerations [m/s³]
+
+    def stepped(seconds: float, parts: int, books: bool = False):
+        """Go on in so many steps: coordinates, velocities, ledgers, and error of the first."""
+        w.q, w.v = start
+        ledgers, error, h = np.zeros(3), None, seconds / parts
+        for part in range(parts):
+            ground = (RIGHT, UP) + part * h * rise
+            solve.look_at(p, w, w.q)
+            solve.solve_motion(p, w, w.q, w.v, *ground)
+            w.a = w.out
+            step.start_step(p, w)
+            ledgers += step.take_step(p, w, step.Stretch(h, *ground, *h * rise), books)
+            error = error or step.step_error(p, w, h)
+            w.q, w.v = w.q1, w.v1
+        return rows(w.q, n), rows(w.v, n), ledgers, error
+
+    exact, speeds, _, _ = stepped(0.02, 8)
+    off = [np.abs(stepped(0.02, parts)[0] - exact).max() for parts in (1, 2)]
+    assert off[0] / off[1] == pytest.approx(32.0, rel=0.5)
+    # the pair's estimate is of order 4 of a step, so of order 5 in its length
+    errors = [stepped(seconds, 1)[3] for seconds in (0.02, 0.01)]
+    assert errors[0] / errors[1] == pytest.approx(32.0, rel=0.6)
+    _, _, (work, lost, tied), _ = stepped(0.02, 4, books=True)
+
+    def energy(q, v):
+        return (state.masses * v * v / 2).sum() + G * (
+            state.masses[:, 1] * q[:, 1]
+        ).sum()
+
+    gained = energy(exact, speeds) - energy(rows(start[0], n), rows(start[1], n))
+    assert gained == pytest.approx(work - lost - tied, rel=1e-6, abs=1e-8)
+    assert tied == 0.0
+
+
+def test_between_the_ends_of_a_step_all_lies_on_the_quintic_of_both_ends():
+    rng = np.random.default_rng(9)
+    state = drawn(rng, False, 0)
+    p, w, n = state.p, state.w, state.count
+    h = 0.3
+    curve = np.polynomial.Polynomial
+    each = [curve(rng.normal(0, 1, 6)) for _ in range(3 * n)]
+    for ends, at in (("0", 0.0), ("1", h)):
+        for name, order in (("q", 0), ("v", 1), ("a", 2)):
+            w[name + ends][: 3 * n] = [
+                c.deriv(order)(at) if order else c(at) for c in each
+            ]
+    for tau in (0.0, 0.3, 0.8, 1.0):
+        step.margin_at(p, w, tau, step.Stretch(h, 0.0, 0.0, 0.0, 0.0), False)
+        assert w.q[: 3 * n] == pytest.approx([c(tau * h) for c in each], abs=1e-11)
+        assert w.v[: 3 * n] == pytest.approx(
+            [c.deriv()(tau * h) for c in each], abs=1e-11
+        )
+
+
+def test_pads_bear_what_the_ends_of_their_contact_bear_and_break_where_one_is_overloaded():
+    """The same force and moment about the middle; N/2 ± M/(2 c)."""
+    rng = np.random.default_rng(10)
+    for _ in range(20):
+        state = drawn(rng, False, 2)
+        p, w, k = state.p, state.w, 1
+        w.whole[k], p.is_bonded[k], p.bond_spread[k] = 1, 1, rng.uniform(0.05, 0.3)
+        p.bond_tension[k], p.bond_shear[k] = rng.uniform(10, 500, 2)
+        w.normal[k], w.shear[k] = rng.normal(0, 300, 2), rng.normal(0, 300)
+        left, right = bonds.pad_forces(p, w, k)
+        width = np.linalg.norm(np.subtract(*state.bodies[k].corners))
+        assert left + right == pytest.approx(w.normal[k].sum())
+        moment = (w.normal[k, 1] - w.normal[k, 0]) * width / 2
+        assert (right - left) * p.bond_spread[k] == pytest.approx(moment)
+        assert bonds.pad_force(p, w, k) == min(left, right)
+        holds = p.bond_shear[k] + p.static[k] * (left + right) - abs(w.shear[k])
+        least = min(p.bond_tension[k] + min(left, right), holds)
+        assert bonds.bond_margin(p, w, k) == pytest.approx(least / p.weight, abs=1e-11)
+        bonds.fill_rest_margins(p, w, k, 0)
+        rest = w.rest[4 * k : 4 * k + 4, 0]
+        assert rest.min() == pytest.approx(least / p.weight, abs=1e-11)
+        assert rest[1] - rest[0] == pytest.approx((right - left) / p.weight)
+        assert rest[3] - rest[2] == pytest.approx(2 * w.shear[k] / p.weight)
+        # twice what one pad bears
+        at = p.bond_number[k] = 3
+        bonds.note_loads(p, w)
+        needed = max(0.0, -2 * min(left, right))
+        assert w.outcome.largest_force[at] == pytest.approx(needed)
+
+
+ANCHORS = ((0.9, 0.5, 1.4), (-0.7, 0.2, 0.2))
+
+
+def tied(rng: np.random.Generator, bracket: bool):
+    """A block that is tied to two anchors, somewhere in flight."""
+    block = Block(0.4, 1.0, 80.0)
+    made = [
+        Tie(
+            (0.1, 0.0, 0.9),
+            (x, 0.0, z),
+            4e3,
+            damping=60.0,
+            slack=0.05,
+            strength=900.0,
+            bracket=bracket,
+        )
+        for x, _, z in ANCHORS
+    ]
+    system = hold(as_system(block), *made)
+    p, w = plain(system_record(system, G)), plain(working_memory())
+    w.q[:3] = np.array([0.0, 0.5, 0.0]) + rng.normal(0, 0.1, 3)
+    w.v[:3] = rng.normal(0, 1.0, 3)
+    solve.look_at(p, w, w.q)
+    return p, w
+
+
+@pytest.mark.parametrize("bracket", [False, True])
+def test_ties_pull_from_their_knot_to_their_anchor_by_stretch_and_rate(bracket):
+    rng, changes = np.random.default_rng(11), set()
+    for _ in range(40):
+        p, w = tied(rng, bracket)
+        q, v = w.q[:3].copy(), w.v[:3].copy()
+        expected, taken = np.zeros(3), 0.0
+        w.taut[:2] = rng.choice(
+            [ties.SLACK, ties.TAUT, ties.BROKEN] + [ties.PUSHED] * bracket, 2
+        )
+        for t, (ax, _, az) in enumerate(ANCHORS):
+
+            def way(h, q=q, v=v, ax=ax, az=az):
+                at = q + h * v
+                knot = at[:2] + turn(at[2]) @ (0.1, 0.4)
+                return np.array([ax, az]) - knot
+
+            length = np.linalg.norm(way(0.0))
+            speed = (np.linalg.norm(way(H)) - np.linalg.norm(way(-H))) / (2 * H)
+            start = math.dist((0.1, 0.9), (ax, az))
+            natural = {ties.TAUT: start + 0.05, ties.PUSHED: start - 0.05}.get(
+                int(w.taut[t])
+            )
+            force = 0.0
+            if natural is not None:
+                force = 4e3 * (length - natural) + 60.0 * speed
+            found, rate = ties.tension(p, w, w.q, w.v, t)
+            assert found == pytest.approx(force, abs=1e-4)
+            assert rate == pytest.approx(speed, abs=1e-6)
+            unit, arm = way(0.0) / length, turn(q[2]) @ (0.1, 0.4)
+            expected += force * np.array([*unit, unit[0] * arm[1] - unit[1] * arm[0]])
+            taken += force * speed
+        ties.fill_tie_accelerations(p, w, w.q, w.v)
+        masses = 1 / np.array(p.inverse[:3])
+        assert w.drift[:3] * masses == pytest.approx(expected, abs=1e-3)
+        assert ties.power(p, w, w.q, w.v) == pytest.approx(taken, abs=1e-3)
+        # what the ties take is what they do not give to the bodies
+        assert ties.power(p, w, w.q, w.v) == pytest.approx(
+            -(w.drift[:3] * masses) @ v, abs=1e-9
+        )
+        states = w.taut[:2].copy()
+        forces = [ties.tension(p, w, w.q, w.v, t)[0] for t in (0, 1)]
+        ties.least_tie_margin(p, w, w.q, w.v)
+        fails = w.tie_fails[:2].copy()
+        ties.change_ties(p, w, 3.0)
+        for t in (0, 1):
+            before, after = int(states[t]), int(w.taut[t])
+            changes.add((before, after))
+            length = ties._stretched(p, w, w.q, w.v, t)[4]
+            if before == ties.SLACK:
+                # taut where it is longer than its slack lets it and would pull, and likewise shorter
+                now = []
+                for state in (ties.TAUT, *[ties.PUSHED] * bracket):
+                    w.taut[t] = state
+                    natural = p.tie_long[t] if state == ties.TAUT else p.tie_short[t]
+                    force = ties.tension(p, w, w.q, w.v, t)[0]
+                    if state * (length - natural) > 1e-9 and state * force > 1e-9:
+                        now.append(state)
+                assert [after] == (now or [ties.SLACK])
+                assert bool(fails[t]) == bool(now)
+            elif before == ties.BROKEN:
+                assert after == ties.BROKEN
+            else:
+                expected_state = before
+                if before * forces[t] < -1e-9:
+                    expected_state = ties.SLACK
+                if abs(forces[t]) > 900.0:
+                    expected_state = (
+                        ties.BROKEN
+                        if before * forces[t] > 0 or abs(forces[t]) >= 900
+                        else before
+                    )
+                assert after == expected_state
+    assert len(changes) >= 6 + bracket
+
+
+def test_a_low_wall_is_met_by_a_corner_below_its_top_and_by_its_edge_above():
+    """Gaps by geometry, whatever the side of the wall, and none once the whole side is above its top."""
+    rng, kinds = np.random.default_rng(12), set()
+    block = Block(0.4, 1.0, 80.0)
+    for _ in range(60):
+        side, top = float(rng.choice([-1.0, 1.0])), float(rng.choice([math.inf, 0.6]))
+        wall = Wall(0.5, 0.0 if side > 0 else math.pi, top)
+        p = plain(system_record(hold(as_system(block), wall), G))
+        w = plain(working_memory())
+        w.q[:3] = rng.normal(0, 0.1), 0.5 + rng.uniform(0, 0.3), rng.normal(0, 0.4)
+        solve.look_at(p, w, w.q)
+        q, x_wall = w.q[:3], 0.5 * side
+        lower, upper = (q[:2] + turn(q[2]) @ (0.2 * side, h) for h in (-0.5, 0.5))
+        ends = (lower, upper) if side > 0 else (upper, lower)
+        for end, corner in enumerate(ends):
+            x, y, tx, ty, gap, beyond, kind = solve.end_of(p, w, w.q, 1, end, -1)
+            normal = np.array([-ty, tx])
+            is_upper = corner is upper
+            if lower[1] > top:
+                assert gap == math.inf
+                continue
+            if (
+                not is_upper
+                or top == math.inf
+                or (upper[1] <= top and side * (x_wall - upper[0]) > -1e-9)
+            ):
+                assert kind == 1
+                assert (x, y) == pytest.approx(corner)
+                assert normal == pytest.approx((-side, 0.0))
+                assert gap == pytest.approx(side * (x_wall - corner[0]))
+            elif kind == 0:
+                # the edge's distance from the line of the side
+                flank = (upper - lower) / np.linalg.norm(upper - lower)
+                outwards = side * np.array([flank[1], -flank[0]])
+                assert (x, y) == pytest.approx((x_wall, top))
+                assert normal == pytest.approx(-outwards)
+                assert gap == pytest.approx(
+                    outwards @ (np.array([x_wall, top]) - lower)
+                )
+                over = max(upper[1] - top, side * (upper[0] - x_wall))
+                assert beyond == pytest.approx(over)
+            kinds.add((side, int(kind)))
+            assert walls.is_above(p, w, w.q, 1) == (lower[1] > top)
+    assert kinds == {(s, k) for s in (-1.0, 1.0) for k in (0, 1)}
+
+
+def test_a_bilinear_spring_yields_at_its_strength_and_unloads_along_its_first_stiffness():
+    isolator = BilinearIsolator(
+        mass=20.0, stiffness=400.0, strength=50.0, yield_displacement=0.01
+    )
+    block = as_system(Block(0.4, 1.0, 80.0))
+    p = plain(system_record(hold(block, support=isolator), G))
+    w = plain(working_memory())
+    rise = p.spring_rise
+    assert p.spring_strength == pytest.approx(50.0)
+    path = np.concatenate([np.linspace(0, 0.1, 101), np.linspace(0.1, -0.1, 201)])
+    for before, at in itertools.pairwise(path):
+        w.q[0] = p.standing[0] + at
+        w.v[0] = at - before
+        if support.least_support_margin(p, w, w.q, w.v) < 0:
+            support.change_spring(p, w)
+        force = support.hysteretic_force(p, w, w.q)
+        assert abs(force) <= 50.0 + rise * 0.0011
+        assert support.spring_force(p, w, w.q) == pytest.approx(
+            p.spring_stiffness * at + force
+        )
+    assert w.yields == -1
+
+
+def test_kinetic_energy_is_that_of_all_bodies():
+    rng = np.random.default_rng(13)
+    state = drawn(rng, True, 0)
+    v = rows(state.w.v, state.count)
+    expected = (state.masses * v * v).sum() / 2
+    assert impacts.kinetic_energy(state.p, state.w.v) == pytest.approx(expected)
