@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from scipy.integrate import RK45
+from scipy.optimize import brentq
 
 from ...mutants.plain import plain_library
 from ...oracle.standing import StandingBody, standing, turn
@@ -20,7 +22,15 @@ with plain_library():
     from rockfrag.engines.planar import impact as impacts
     from rockfrag.engines.planar.records import posed, system_record, working_memory
     from rockfrag.engines.planar.search import Trial, prepare, try_mode
-    from rockfrag.system import BilinearIsolator, Block, Tie, Wall, as_system, hold
+    from rockfrag.system import (
+        BilinearIsolator,
+        Block,
+        Column,
+        Tie,
+        Wall,
+        as_system,
+        hold,
+    )
 
 H = 1e-4  # step of differences [s]
 RIGHT, UP = 1.7, -0.8  # accelerations of the ground [m/s²]
@@ -167,7 +177,8 @@ def test_ends_are_where_geometry_has_them():
     rng, kinds = np.random.default_rng(1), set()
     for _ in range(40):
         state = drawn(rng, False, 0)
-        p, w, q = state.p, state.w, rows(state.w.q, state.count)
+        p, w, n = state.p, state.w, state.count
+        q, v, still = rows(w.q, n), rows(w.v, n), np.zeros((n, 3))
         for k in range(state.count):
             for end in (0, 1):
                 x, y, tx, ty, gap, beyond, kind = solve.end_of(p, w, w.q, k, end, -1)
@@ -175,6 +186,13 @@ def test_ends_are_where_geometry_has_them():
                 assert (x, y) == pytest.approx((px, py), abs=1e-12)
                 assert (tx, ty, -ty, tx) == pytest.approx(axes, abs=1e-12)
                 assert gap == pytest.approx(across, abs=1e-12)
+                found = [
+                    solve.rate(p, w.q, w.v, k, x, y, dx, dy)
+                    for dx, dy in ((tx, ty), (-ty, tx))
+                ]
+                assert found == pytest.approx(
+                    rates(state, q, v, still, k, end)[0], abs=1e-5
+                )
                 kinds.add(kind)
                 if k == 0:
                     assert beyond == -math.inf
@@ -345,48 +363,179 @@ def test_margins_of_a_trial_are_forces_and_motions_over_their_units():
     assert what == {0, 1, 2}
 
 
-def test_a_step_of_the_pair_is_of_order_five_and_its_books_close():
-    rng = np.random.default_rng(8)
-    state = drawn(rng, False, 0)
-    while state.count < 2 or not state.closed() or not state.w.slides.any():
+def moving(rng: np.random.Generator) -> State:
+    """Draw a column whose closed ends neither part nor approach, and some of which slide."""
+    while True:
         state = drawn(rng, False, 0)
-    p, w, n = state.p, state.w, state.count
-    # closed ends neither part nor approach
-    assert solve.solve_nearest(p, w, w.v)
-    start = w.q.copy(), w.out.copy()
-    rise = np.array([150.0, -100.0])  # of the ground's accelerations [m/s³]
+        w = state.w
+        if w.slides.any() and solve.solve_nearest(state.p, w, w.v):
+            w.v = w.out
+            return state
 
-    def stepped(seconds: float, parts: int, books: bool = False):
-        """Go on in so many steps: coordinates, velocities, ledgers, and error of the first."""
-        w.q, w.v = start
-        ledgers, error, h = np.zeros(3), None, seconds / parts
-        for part in range(parts):
-            ground = (RIGHT, UP) + part * h * rise
-            solve.look_at(p, w, w.q)
-            solve.solve_motion(p, w, w.q, w.v, *ground)
-            w.a = w.out
-            step.start_step(p, w)
-            ledgers += step.take_step(p, w, step.Stretch(h, *ground, *h * rise), books)
-            error = error or step.step_error(p, w, h)
-            w.q, w.v = w.q1, w.v1
-        return rows(w.q, n), rows(w.v, n), ledgers, error
 
-    exact, speeds, _, _ = stepped(0.02, 8)
-    off = [np.abs(stepped(0.02, parts)[0] - exact).max() for parts in (1, 2)]
-    assert off[0] / off[1] == pytest.approx(32.0, rel=0.5)
-    # the pair's estimate is of order 4 of a step, so of order 5 in its length
-    errors = [stepped(seconds, 1)[3] for seconds in (0.02, 0.01)]
-    assert errors[0] / errors[1] == pytest.approx(32.0, rel=0.6)
-    _, _, (work, lost, tied), _ = stepped(0.02, 4, books=True)
+def motion_of(state: State, y: np.ndarray, ground: np.ndarray) -> np.ndarray:
+    """Rates of coordinates and velocities of a state."""
+    p, w, size = state.p, state.w, 3 * state.count
+    q, v = np.zeros(w.q.size), np.zeros(w.q.size)
+    q[:size], v[:size] = y[:size], y[size:]
+    solve.look_at(p, w, q)
+    solve.solve_motion(p, w, q, v, *ground)
+    return np.concatenate([y[size:], w.out[:size]])
 
-    def energy(q, v):
-        return (state.masses * v * v / 2).sum() + G * (
-            state.masses[:, 1] * q[:, 1]
-        ).sum()
 
-    gained = energy(exact, speeds) - energy(rows(start[0], n), rows(start[1], n))
-    assert gained == pytest.approx(work - lost - tied, rel=1e-6, abs=1e-8)
-    assert tied == 0.0
+def test_a_step_is_that_of_dormand_and_prince_and_its_books_close():
+    rng, rise = np.random.default_rng(8), np.array([150.0, -100.0])
+    for _ in range(3):
+        state = moving(rng)
+        p, w, n = state.p, state.w, state.count
+        size, h = 3 * n, 2e-3
+        q, v = w.q.copy(), w.v.copy()
+        start = np.concatenate([q[:size], v[:size]])
+        rates = []
+        for c, row in zip(RK45.C, RK45.A, strict=True):
+            y = start + h * sum((a * k for a, k in zip(row, rates, strict=False)), 0.0)
+            rates.append(motion_of(state, y, (RIGHT, UP) + c * h * rise))
+        end = start + h * (RK45.B @ rates)
+        rates.append(motion_of(state, end, (RIGHT, UP) + h * rise))
+        off = np.abs(h * (RK45.E @ rates))[size:].reshape(n, 3) * (1, 1, p.size)
+        w.q, w.v, w.a[:size] = q, v, rates[0][size:]
+        solve.look_at(p, w, w.q)
+        step.start_step(p, w)
+        stretch = step.Stretch(h, RIGHT, UP, *h * rise)
+        work, lost, tied = step.take_step(p, w, stretch, True)
+        found = np.concatenate([w.q1[:size], w.v1[:size]])
+        assert found == pytest.approx(end, abs=1e-12 * np.abs(end).max())
+        assert w.a1[:size] == pytest.approx(rates[-1][size:], rel=1e-9, abs=1e-9)
+        assert step.step_error(p, w, h) == pytest.approx(off.max() / p.speed, rel=1e-4)
+
+        def energy(y, state=state, n=n):
+            q, v = y.reshape(2, n, 3)
+            motion = (state.masses * v * v).sum() / 2
+            return motion + G * (state.masses[:, 1] * q[:, 1]).sum()
+
+        gained = energy(end) - energy(start)
+        assert gained == pytest.approx(work - lost - tied, rel=1e-6, abs=1e-9)
+        assert tied == 0.0 != lost
+        ahead = step.ground_at(step.beginning(stretch, 0.25), 0.4)
+        assert ahead == pytest.approx((RIGHT, UP) + 0.1 * h * rise)
+
+
+def test_margins_of_a_motion_are_gaps_forces_slips_and_turns_over_their_units():
+    rng, seen = np.random.default_rng(14), set()
+    for _ in range(60):
+        state = drawn(rng, False, 0)
+        p, w, n = state.p, state.w, state.count
+        if not solve.solve_motion(p, w, w.q, w.v, RIGHT, UP):
+            continue
+        q, v, still = rows(w.q, n), rows(w.v, n), np.zeros((n, 3))
+        margins, forces = [], []
+        for k in range(n):
+            for end in (0, 1):
+                seen_there = sight(state, q, k, end)
+                beyond = solve.end_of(p, w, w.q, k, end, -1)[5]
+                if not w.closed[k, end]:
+                    margins.append((step.GAP + end, k, seen_there[1] / p.size))
+                    if k and beyond < -2 * p.half[k]:
+                        margins.append((None, k, (2 * p.half[k] + beyond) / p.size))
+                    continue
+                stiff = max(1.0, p.kinetic[k]) if w.slides[k] else 1.0
+                forces.append((step.GAP + end, k, stiff * w.normal[k, end] / p.weight))
+                if k and w.slides[k]:
+                    inside = (-1) ** (not state.over[k, end]) * (1e-9 - beyond / p.size)
+                    margins.append((step.EDGE + end, k, inside))
+            closed = w.closed[k].any()
+            if closed and w.slides[k]:
+                slip = rates(state, q, v, still, k, state.first(k))[0][0]
+                margins.append((step.FRICTION, k, w.slides[k] * slip / p.speed))
+            elif closed:
+                left = p.static[k] * w.normal[k].sum() - abs(w.shear[k])
+                left /= p.weight * max(p.static[k], 1.0)
+                forces.append((step.FRICTION, k, left))
+            turned = [abs(q[k, 2])] + [abs(q[k, 2] - q[k - 1, 2])] * (k > 0)
+            margins.append((step.FALL, k, math.pi / 2 - max(turned)))
+        for with_forces, listed in ((False, margins), (True, margins + forces)):
+            found = step.least_margin(p, w, w.q, w.v, with_forces)
+            assert found == pytest.approx(min(each[2] for each in listed), abs=1e-6)
+            for channel, k, margin in listed:
+                if channel is None or abs(margin) < 1e-6:
+                    continue
+                if channel != step.FALL:
+                    assert w.fails[k, channel] == (margin < 0)
+                    seen.add((channel, margin < 0))
+        assert step.force_fails(p, w) == any(each[2] < 0 for each in forces)
+    # forces and slips of either sign, gaps of one that is open, corners on their side of an edge
+    assert len(seen) == 8
+
+
+def test_what_slides_off_its_face_or_turns_too_far_falls():
+    stack = Column((Block(0.4, 0.2, 30.0), Block(0.3, 0.6, 20.0)))
+    p = plain(system_record(as_system(stack), G))
+    for shift in (0.0, 0.34, 0.36, -0.34, -0.36):
+        w = plain(working_memory())
+        w.q, w.closed[:2], w.slides[1] = p.standing, 1, 1
+        w.q[3] += shift
+        solve.look_at(p, w, w.q)
+        for k, end in itertools.product((0, 1), (0, 1)):
+            w.kind[k, end] = solve.end_of(p, w, w.q, k, end, -1)[6]
+        step.least_margin(p, w, w.q, w.v, False)
+        gone = abs(shift) > 0.35
+        assert step.off_the_edge(p, w, w.q, 1) == gone
+        assert w.fails[1, step.FALL] == gone
+        w.slides[1] = 0
+        step.least_margin(p, w, w.q, w.v, False)
+        assert w.fails[1, step.FALL] == 0
+
+
+def test_a_gap_that_narrows_and_widens_again_is_looked_at():
+    rng, seen = np.random.default_rng(15), set()
+    for _ in range(40):
+        state = drawn(rng, False, 0)
+        p, w, n = state.p, state.w, state.count
+        q, v, still = rows(w.q, n), rows(w.v, n), np.zeros((n, 3))
+        step.start_step(p, w)
+        w.q1, w.v1 = w.q, w.v * rng.choice([-1.0, 1.0], w.v.size)
+        later, expected = rows(w.v1, n), False
+        for k, end in itertools.product(range(n), (0, 1)):
+            if not w.closed[k, end]:
+                before, after = (
+                    rates(state, q, each, still, k, end)[0][1] for each in (v, later)
+                )
+                assert w.early[k, end] == pytest.approx(before, abs=1e-6)
+                expected = expected or (before < 0 < after)
+            else:
+                assert w.early[k, end] == 0.0
+        assert step.comes_near(p, w, 0.01) == expected
+        seen.add(expected)
+    assert seen == {False, True}
+
+
+def test_the_first_failure_of_a_flight_is_where_a_corner_comes_down():
+    """A body that is thrown up: the gap of its lower corner is a parabola and a sine."""
+    block = Block(0.4, 1.0, 80.0)
+    p, w = plain(system_record(as_system(block), G)), plain(working_memory())
+    w.q0[:3], w.v0[:3] = (0.0, 0.56, 0.0), (0.0, 0.2, 1.5)
+    w.a0[:3] = w.a1[:3] = 0.0, -G, 0.0
+    h = 0.16
+    w.q1[:3] = w.q0[:3] + h * w.v0[:3] + h * h / 2 * w.a0[:3]
+    w.v1[:3] = w.v0[:3] + h * w.a0[:3]
+
+    def gap(t):
+        theta = 1.5 * t
+        return (
+            0.56
+            + 0.2 * t
+            - G * t * t / 2
+            - 0.5 * math.cos(theta)
+            - 0.2 * math.sin(theta)
+        )
+
+    expected = brentq(gap, 0.0, h, xtol=1e-15)
+    stretch = step.Stretch(h, 0.0, 0.0, 0.0, 0.0)
+    at_end = step.margin_at(p, w, 1.0, stretch, True)
+    assert at_end == pytest.approx(gap(h) / p.size)
+    found = step.first_failure(p, w, (1.0, at_end, False), stretch)
+    assert found * h == pytest.approx(expected, abs=1e-12)
+    assert w.fails[0].tolist() == [0, 1, 0, 0, 0, 0, 0]
 
 
 def test_between_the_ends_of_a_step_all_lies_on_the_quintic_of_both_ends():
@@ -541,10 +690,30 @@ def test_ties_pull_from_their_knot_to_their_anchor_by_stretch_and_rate(bracket):
     assert len(changes) >= 6 + bracket
 
 
+@pytest.mark.parametrize(("early", "late"), [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+@pytest.mark.parametrize("bracket", [False, True])
+@pytest.mark.parametrize("near", [-0.04, 0.0, 0.04])
+def test_a_slack_tie_that_turns_back_near_its_length_is_looked_at(
+    early, late, bracket, near
+):
+    """Its slack is 0.05 m to either side; it may move by 0.02 m in the step."""
+    block = Block(0.4, 1.0, 80.0)
+    tie = Tie((0.0, 0.0, 0.5), (2.0, 0.0, 0.5), 4e3, slack=0.05, bracket=bracket)
+    p = plain(system_record(hold(as_system(block), tie), G))
+    w = plain(working_memory())
+    w.q[:3], w.v[:3] = (-near, 0.5, 0.0), (-early, 0.0, 0.0)
+    solve.look_at(p, w, w.q)
+    w.a[:] = 0.0
+    step.start_step(p, w)
+    w.q1, w.v1[:3] = w.q, (-late, 0.0, 0.0)
+    may = near > 0 or (bracket and near < 0)
+    assert ties.turns_back(p, w, 0.02) == (may and early != late)
+
+
 def test_a_low_wall_is_met_by_a_corner_below_its_top_and_by_its_edge_above():
     """Gaps by geometry, whatever the side of the wall, and none once the whole side is above its top."""
     rng, kinds = np.random.default_rng(12), set()
-    block = Block(0.4, 1.0, 80.0)
+    block = Block(0.4, 1.0, 80.0, lean=0.1)
     for _ in range(60):
         side, top = float(rng.choice([-1.0, 1.0])), float(rng.choice([math.inf, 0.6]))
         wall = Wall(0.5, 0.0 if side > 0 else math.pi, top)
@@ -553,8 +722,10 @@ def test_a_low_wall_is_met_by_a_corner_below_its_top_and_by_its_edge_above():
         w.q[:3] = rng.normal(0, 0.1), 0.5 + rng.uniform(0, 0.3), rng.normal(0, 0.4)
         solve.look_at(p, w, w.q)
         q, x_wall = w.q[:3], 0.5 * side
-        lower, upper = (q[:2] + turn(q[2]) @ (0.2 * side, h) for h in (-0.5, 0.5))
-        ends = (lower, upper) if side > 0 else (upper, lower)
+        ends = tuple(q[:2] + turn(q[2]) @ p.edge[1, end] for end in (0, 1))
+        lower, upper = ends if side > 0 else ends[::-1]
+        # the side leans with its block
+        assert abs(np.subtract(*p.edge[1])[0]) > 0.05
         for end, corner in enumerate(ends):
             x, y, tx, ty, gap, beyond, kind = solve.end_of(p, w, w.q, 1, end, -1)
             normal = np.array([-ty, tx])
