@@ -25,6 +25,7 @@ with plain_library():
     from rockfrag.system import (
         BilinearIsolator,
         Block,
+        Bond,
         Column,
         Tie,
         Wall,
@@ -688,6 +689,81 @@ def test_ties_pull_from_their_knot_to_their_anchor_by_stretch_and_rate(bracket):
                     )
                 assert after == expected_state
     assert len(changes) >= 6 + bracket
+
+
+def test_a_tie_moves_the_body_that_it_holds_and_no_other():
+    """Two bodies in flight: both fall, and one is drawn towards the anchor."""
+    stack = Column((Block(0.4, 0.3, 30.0), Block(0.3, 0.6, 20.0)))
+    tie = Tie((0.0, 0.0, 0.6), (2.0, 0.0, 0.9), 500.0, slack=0.02)
+    p = plain(system_record(hold(as_system(stack), tie), G))
+    w = plain(working_memory())
+    w.q, w.drive[:] = p.standing, -1
+    w.q[3] -= 0.1
+    w.taut[0] = ties.TAUT
+    solve.look_at(p, w, w.q)
+    assert solve.solve_motion(p, w, w.q, w.v, 0.0, 0.0)
+    force = 500.0 * 0.08
+    expected = [[0.0, -G, 0.0], [force / 20.0, -G, force * 0.3 / p.inertia[1]]]
+    assert rows(w.out, 2) == pytest.approx(np.array(expected))
+
+
+def held_margins(p, w, forces=True):
+    """Least margin of a state of what is held, and the flags of its contacts."""
+    solve.look_at(p, w, w.q)
+    return step.least_margin(p, w, w.q, w.v, forces), w.fails.copy()
+
+
+def test_what_holds_a_body_has_margins_of_its_own():
+    block = as_system(Block(0.4, 1.0, 80.0))
+    bond = Bond(100.0, 1e9, 0.1)
+    p, w = plain(system_record(hold(block, bonds=bond), G)), plain(working_memory())
+    w.q, w.closed[0], w.kind[:], w.whole[0] = p.standing, 1, 1, 1
+    solve.look_at(p, w, w.q)
+    for left, holds in ((-45.0, True), (-55.0, False)):
+        # both pads at half of the ends' distance from the middle
+        w.normal[0] = 100.0 + left / 2, 300.0 - left / 2
+        assert min(bonds.pad_forces(p, w, 0)) == pytest.approx(left)
+        least, fails = held_margins(p, w)
+        assert (least > 0) == holds
+        assert fails[0, step.BREAK] == (not holds)
+        assert step.force_fails(p, w) == (not holds)
+        assert held_margins(p, w, forces=False)[0] > 0
+    # a tie that is as long as it may be, beside a contact that is far from failing
+    tie = Tie((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), 1e4, slack=0.01)
+    p, w = plain(system_record(hold(block, tie), G)), plain(working_memory())
+    for aside, slack in ((-0.005, True), (-0.015, False)):
+        w.q, w.closed[0], w.kind[:] = p.standing, 1, 1
+        w.q[0] += aside
+        w.normal[0] = 400.0
+        least, _ = held_margins(p, w)
+        assert (least > 0) == slack
+        longer = -0.01 - aside
+        expected = max(-longer / p.size, -1e4 * longer / p.weight)
+        assert least == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_body_passes_a_kerb_once_its_whole_side_is_above_it_and_beyond(side):
+    kerb = Wall(0.3, 0.0 if side > 0 else math.pi, 0.2)
+    block = as_system(Block(0.4, 1.0, 80.0))
+    p, w = plain(system_record(hold(block, kerb), G)), plain(working_memory())
+    for up, aside, above, over in (
+        *(
+            (0.1, 0.05, False, False),
+            (0.25, 0.05, True, False),
+            (0.25, 0.15, True, True),
+        ),
+    ):
+        w.q, w.closed[:], w.kind[:] = p.standing, 0, 1
+        w.q[:2] += side * aside, up
+        _, fails = held_margins(p, w)
+        assert walls.is_above(p, w, w.q, 1) == above
+        assert walls.climbs(p, w, w.q, 1) == over
+        assert fails[1, step.FALL] == over
+        assert fails[1, step.BREAK] == 0
+        # what rested on its edge has left it
+        w.closed[1, 1 if side > 0 else 0] = 1
+        assert held_margins(p, w)[1][1, step.BREAK] == above
 
 
 @pytest.mark.parametrize(("early", "late"), [(1, 1), (1, -1), (-1, 1), (-1, -1)])
