@@ -1,8 +1,8 @@
 """What may be changed in a line of code: an operator, a number, a function for its counterpart.
 
-Left alone is what means the same if it is a little larger, because it guards only: a tolerance (a number below 1e-5),
-what stands for infinity (above 1e6), an integer constant whose name says a limit of steps or room, and arguments that
-only check or lay out. All else is changed: signs, comparisons, coefficients, indices, constants of physics.
+Left alone is what means the same if it is a little larger, because it guards only: a tolerance (a number below
+1e-5), what stands for infinity (above 1e6), an integer constant whose name says a limit of steps or room, and
+arguments that only check or lay out. All else is changed: signs, comparisons, coefficients, indices, constants.
 """
 
 import ast
