@@ -238,6 +238,30 @@ def test_counts_give_the_curve_of_the_rows(counted, column: str):
     )
 
 
+@pytest.mark.parametrize("column", COLUMNS)
+def test_counts_hold_the_tests_of_the_rows_value_by_value(counted, column: str):
+    rows, few = counted[0].outcomes(column), counted[1][""].outcomes(column)
+    pooled = few.by_value()
+    assert (np.diff(pooled.im) > 0).all()
+    assert (pooled.n, pooled.n_overturned) == (few.n, few.n_overturned)
+    for im, fell, trials in zip(
+        pooled.im, pooled.overturned, pooled.trials, strict=True
+    ):
+        here = few.im == im
+        assert (fell, trials) == (few.overturned[here].sum(), few.trials[here].sum())
+    # motions of one capacity: above it all their tests overturn, in whatever cell
+    capacity = np.log(np.quantile(rows.im, [0.3, 0.6]) * (1 + 1e-6))
+    edges = np.quantile(few.im, [0.2, 0.5, 0.8])
+    cell = np.searchsorted(edges, few.im, side="right")
+    found = few.drawn(np.repeat(capacity[:, None], MOTIONS, axis=1), cell)
+    # a cell of counts is known to its width
+    at = np.searchsorted(edges, rows.im, side="right")
+    for one, numbers in zip(capacity, found, strict=True):
+        falls = rows.log_im > one
+        assert numbers.sum() == falls.sum()
+        assert numbers == pytest.approx(np.bincount(at, falls, minlength=4), abs=4)
+
+
 def test_parts_change_nothing_and_windows_are_those_of_the_table(counted):
     table, *counts = counted
     known = table.resurrections("amplitude_g")

@@ -1,6 +1,12 @@
-"""What may be changed in a line of code: an operator, a number, a function for its counterpart."""
+"""What may be changed in a line of code: an operator, a number, a function for its counterpart.
+
+Left alone is what means the same if it is a little larger, because it guards only: a tolerance (a number below
+1e-5), what stands for infinity (above 1e6), an integer constant whose name says a limit of steps or room, and
+arguments that only check or lay out. All else is changed: signs, comparisons, coefficients, indices, constants.
+"""
 
 import ast
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -35,6 +41,18 @@ FUNCTIONS |= {other: name for name, other in FUNCTIONS.items()}
 
 SAID = (ast.Raise, ast.JoinedStr, ast.Assert)
 """What a change of concerns words alone, or nothing."""
+
+GUARDS = re.compile(
+    r"_?(MOST|MANY|LONGEST|LARGEST|DEEPEST|TRIES|HALVINGS|NEWTON_STEPS|SWEEPS|PATIENCE|GIVE_UP|ROOM|CHUNK|AT_ONCE"
+    r"|KEPT_AT_ONCE|MEMORY|STATE|LANES|BLOCK|PASSES|SEED)(_[A-Z_]+)?"
+)
+"""Names of constants, integers, that bound steps or room and do not enter a result."""
+
+CHECKS = ("strict", "align", "ensure_ascii", "allow_nan", "low_memory")
+"""Arguments that check, or say how something lies in memory or in a file."""
+
+SMALLEST, LARGEST = 1e-5, 1e6
+"""Numbers with a fraction beyond these are tolerances or stand for infinity."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +92,8 @@ def changes_of(source: str) -> list[Change]:
 
 
 def _of_numbers(node: ast.AST) -> Iterator[ast.AST]:
-    """The parts of a program that are not words, annotations, decorators or imports."""
-    if isinstance(node, SAID):
+    """The parts of a program that are not words, annotations, decorators, imports or guards."""
+    if isinstance(node, SAID) or _is_a_guard(node):
         return
     yield node
     for name, value in ast.iter_fields(node):
@@ -86,6 +104,20 @@ def _of_numbers(node: ast.AST) -> Iterator[ast.AST]:
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST):
                 yield from _of_numbers(child)
+
+
+def _is_a_guard(node: ast.AST) -> bool:
+    """Whether a part only bounds steps or room, checks, or stands for rounding or infinity."""
+    if isinstance(node, ast.keyword):
+        return node.arg in CHECKS
+    if isinstance(node, ast.Assign):
+        of_integer = isinstance(getattr(node.value, "value", None), int)
+        names = [getattr(each, "id", "") for each in node.targets]
+        return of_integer and all(GUARDS.fullmatch(name) for name in names)
+    value = getattr(node, "value", None)
+    if not isinstance(node, ast.Constant) or not isinstance(value, float):
+        return False
+    return value != 0.0 and not SMALLEST < abs(value) < LARGEST
 
 
 def _is_of_words(function: ast.expr) -> bool:

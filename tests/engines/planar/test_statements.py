@@ -1,0 +1,865 @@
+"""What the kernels say of a column in one state, beside Newton's and Euler's equations and plain geometry.
+
+Kernels are called one by one, as plain Python. Motion at a contact is the change of a corner's place over the face
+(or of an edge's under the base) as the bodies go on by their velocities and accelerations, by differences.
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from scipy.integrate import RK45
+from scipy.optimize import brentq
+
+from ...mutants.plain import plain_library
+from ...oracle.standing import StandingBody, standing, turn
+from .cases import G, random_column, with_contacts
+
+with plain_library():
+    from rockfrag.engines.planar import bonds, solve, step, support, ties, walls
+    from rockfrag.engines.planar import impact as impacts
+    from rockfrag.engines.planar.records import posed, system_record, working_memory
+    from rockfrag.engines.planar.search import Trial, prepare, try_mode
+    from rockfrag.system import (
+        BilinearIsolator,
+        Block,
+        Bond,
+        Column,
+        Tie,
+        Wall,
+        as_system,
+        hold,
+    )
+
+H = 1e-4  # step of differences [s]
+RIGHT, UP = 1.7, -0.8  # accelerations of the ground [m/s²]
+
+
+def plain(record):
+    """A record whose fields are attributes."""
+    return np.array([record]).view(np.recarray)[0]
+
+
+@dataclass
+class State:
+    """A column in some state and mode: its records and its bodies as they stand."""
+
+    p: np.record
+    w: np.record
+    bodies: list[StandingBody]
+    over: dict[tuple[int, int], bool]  # whether a corner is over its face
+
+    @property
+    def count(self) -> int:
+        return len(self.bodies)
+
+    @property
+    def masses(self) -> np.ndarray:
+        """Of each coordinate, shape (n, 3)."""
+        return np.array([[b.mass, b.mass, b.inertia] for b in self.bodies])
+
+    def closed(self) -> list[tuple[int, int]]:
+        """Closed ends as (contact, end)."""
+        ends = itertools.product(range(self.count), (0, 1))
+        return [(k, end) for k, end in ends if self.w.closed[k, end]]
+
+    def first(self, k: int) -> int:
+        """First closed end of a contact."""
+        return 0 if self.w.closed[k, 0] else 1
+
+
+def rows(flat: np.ndarray, count: int) -> np.ndarray:
+    """The coordinates of some bodies, shape (n, 3)."""
+    return np.array(flat[: 3 * count]).reshape(count, 3)
+
+
+def sight(state: State, q: np.ndarray, k: int, end: int) -> np.ndarray:
+    """Place along and across the face (or the base, where the corner is beyond its edge), and axes and point."""
+    body = state.bodies[k]
+    corner = q[k, :2] + turn(q[k, 2]) @ body.corners[end]
+    if k == 0:
+        return np.array([*corner, 1.0, 0.0, 0.0, 1.0, *corner])
+    below = state.bodies[k - 1]
+    edge = q[k - 1, :2] + turn(q[k - 1, 2]) @ below.edges[end]
+    over = state.over[k, end]
+    angle = q[k - 1, 2] + below.face if over else q[k, 2] + body.base
+    tangent, normal = turn(angle).T
+    way = corner - edge
+    return np.array(
+        [way @ tangent, way @ normal, *tangent, *normal, *(corner if over else edge)]
+    )
+
+
+def rates(state: State, q, v, a, k: int, end: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rates of the places along and across, and the rates of these."""
+    before, now, after = (
+        sight(state, q + v * h + a * h * h / 2, k, end)[:2] for h in (-H, 0.0, H)
+    )
+    return (after - before) / (2 * H), (after - 2 * now + before) / H**2
+
+
+def drawn(rng: np.random.Generator, impact: bool, stands: int) -> State:
+    """Draw a column of which the lowest bodies stand, in a mode of which each contact that is shut stays level."""
+    n = int(rng.integers(max(1, stands), 5))
+    mus = rng.uniform(0.1, 1.0, n).tolist()
+    column = random_column(rng, n)
+    system = with_contacts(column, mus)
+    p, w = plain(system_record(system, G)), plain(working_memory())
+    bodies = standing(system)
+    theta, omega = np.zeros(n), np.zeros(n)
+    w.drive[:] = -1
+    modes = []
+    for k in range(n):
+        ends = (
+            3 if k < stands else int(rng.choice([0, 1, 2, 3], p=[0.15, 0.3, 0.3, 0.25]))
+        )
+        modes.append(ends)
+        w.closed[k] = ends & 1, ends >> 1
+        if ends and k >= stands:
+            w.slides[k] = rng.choice([-1, 0, 1])
+        below = (theta[k - 1], omega[k - 1]) if k else (0.0, 0.0)
+        if ends == 3:
+            theta[k], omega[k] = below
+        else:
+            side = {1: -1, 2: 1}.get(ends, rng.choice([-1, 1]))
+            theta[k] = below[0] + side * rng.uniform(0.01, 0.3)
+            omega[k] = rng.normal()
+    flat, rate = posed(p, theta.tolist(), omega.tolist())
+    q, v = rows(flat, n), rows(rate, n)
+    # what slides has slid, some of it beyond the edge, and goes on; what is open is somewhere
+    for k in range(stands, n):
+        shift = rng.uniform(-0.1, 0.1, 2) * (w.slides[k] != 0 or modes[k] == 0)
+        if k:
+            shift[0] += 2.2 * p.half[k] * rng.choice([-1, 0, 1]) * (modes[k] in (1, 2))
+            tangent = turn(q[k - 1, 2] + bodies[k - 1].face)[:, 0]
+        else:
+            tangent = np.array([1.0, 0.0])
+        q[k:, :2] += shift[0] * tangent
+        if modes[k] != 3:
+            v[k, :2] += rng.normal(0, 0.5, 2)
+    w.q[: 3 * n], w.v[: 3 * n] = q.ravel(), v.ravel()
+    solve.look_at(p, w, w.q)
+    over = {}
+    for k in range(n):
+        for end in (0, 1):
+            w.kind[k, end] = solve.end_of(p, w, w.q, k, end, -1)[6]
+            over[k, end] = bool(w.kind[k, end] == 1)
+    if impact:
+        w.v[: 3 * n] = rng.normal(0, 1, 3 * n)
+    return State(p, w, bodies, over)
+
+
+def pushed(state: State) -> np.ndarray:
+    """Forces and moments of the contacts on each body, with those that the kernels have left, shape (n, 3)."""
+    w, q = state.w, rows(state.w.q, state.count)
+    total = np.zeros((state.count, 3))
+    for k in range(state.count):
+        for end in (0, 1):
+            seen = sight(state, q, k, end)
+            force = w.normal[k, end] * seen[4:6]
+            if w.slides[k] != 0:
+                # each end rubs by what it is pushed
+                rubs = w.slides[k] * state.p.kinetic[k]
+                force = force - rubs * w.normal[k, end] * seen[2:4]
+            elif w.closed[k].any() and end == state.first(k):
+                force = force + w.shear[k] * seen[2:4]
+            for body, sign in ((k, 1), (k - 1, -1)):
+                if body >= 0:
+                    arm = seen[6:8] - q[body, :2]
+                    # clockwise
+                    moment = force[0] * arm[1] - force[1] * arm[0]
+                    total[body] += sign * np.array([*force, moment])
+    return total
+
+
+def test_ends_are_where_geometry_has_them():
+    rng, kinds = np.random.default_rng(1), set()
+    for _ in range(40):
+        state = drawn(rng, False, 0)
+        p, w, n = state.p, state.w, state.count
+        q, v, still = rows(w.q, n), rows(w.v, n), np.zeros((n, 3))
+        for k in range(state.count):
+            for end in (0, 1):
+                x, y, tx, ty, gap, beyond, kind = solve.end_of(p, w, w.q, k, end, -1)
+                _, across, *axes, px, py = sight(state, q, k, end)
+                assert (x, y) == pytest.approx((px, py), abs=1e-12)
+                assert (tx, ty, -ty, tx) == pytest.approx(axes, abs=1e-12)
+                assert gap == pytest.approx(across, abs=1e-12)
+                found = [
+                    solve.rate(p, w.q, w.v, k, x, y, dx, dy)
+                    for dx, dy in ((tx, ty), (-ty, tx))
+                ]
+                assert found == pytest.approx(
+                    rates(state, q, v, still, k, end)[0], abs=1e-5
+                )
+                kinds.add(kind)
+                if k == 0:
+                    assert beyond == -math.inf
+                    continue
+                state.over[k, end] = True
+                reach = (2 * end - 1) * sight(state, q, k, end)[0]
+                state.over[k, end] = bool(kind == 1)
+                assert beyond == pytest.approx(reach, abs=1e-12)
+                assert (kind == 1) == (beyond <= 1e-9 * p.size)
+    assert kinds == {0, 1}
+
+
+@pytest.mark.parametrize("stands", [0, 1, 2])
+def test_a_motion_keeps_its_mode_and_obeys_newton_and_euler(stands):
+    rng, seen = np.random.default_rng(2 + stands), set()
+    for _ in range(60):
+        state = drawn(rng, False, stands)
+        p, w, n = state.p, state.w, state.count
+        if not solve.solve_motion(p, w, w.q, w.v, RIGHT, UP):
+            continue
+        q, v, a = (rows(each, n) for each in (w.q, w.v, w.out))
+        assert np.abs(a[:stands]).max(initial=0.0) < 1e-12
+        net = state.masses * (a + np.array([RIGHT, UP + G, 0.0]))
+        unit = np.abs(net).max()
+        assert pushed(state) == pytest.approx(net, abs=1e-9 * unit)
+        for k in range(n):
+            if not w.closed[k].any():
+                assert not w.normal[k].any() and w.shear[k] == 0.0
+                continue
+            seen.add(
+                (
+                    min(k, 1),
+                    *w.closed[k].tolist(),
+                    abs(int(w.slides[k])),
+                    state.over[k, state.first(k)],
+                )
+            )
+            for end in np.flatnonzero(w.closed[k]).tolist():
+                _, (along, across) = rates(state, q, v, a, k, end)
+                small = 1e-5 * (1 + np.abs(a).max() + np.square(v).max())
+                assert abs(across) < small
+                if w.slides[k] == 0 and end == state.first(k):
+                    assert abs(along) < small
+            if w.slides[k] != 0:
+                rubs = -w.slides[k] * p.kinetic[k] * w.normal[k].sum()
+                assert w.shear[k] == pytest.approx(rubs, abs=1e-9 * unit)
+            assert not w.normal[k][w.closed[k] == 0].any()
+    assert len(seen) >= 6
+
+
+def test_an_impact_brings_about_what_is_asked_and_keeps_momentum():
+    rng, laws = np.random.default_rng(5), set()
+    for _ in range(120):
+        state = drawn(rng, True, 0)
+        p, w, n = state.p, state.w, state.count
+        w.back[:n] = rng.uniform(0, 0.3, (n, 2)) * rng.integers(0, 2)
+        driven, departs = None, 0.0
+        for k in range(n):
+            if w.closed[k].sum() != 1:
+                continue
+            law = rng.choice(["none", "place", "couple"])
+            laws.add(law)
+            if law == "place":
+                w.fraction[k, state.first(k)] = rng.uniform(0.05, 0.4)
+            if law == "couple" and driven is None:
+                driven, departs = k, rng.uniform(0.1, 1.0)
+                w.drive[k], w.depart[k] = 1 - state.first(k), departs
+        if not solve.solve_impact(p, w):
+            continue
+        q, before, after = (rows(each, n) for each in (w.q, w.v, w.out))
+        change = state.masses * (after - before)
+        missing = change - pushed(state)
+        unit = np.abs(change).max() + 1e-12
+        if driven is not None:
+            # a couple between two bodies: all else is explained
+            couple = missing[driven, 2]
+            missing[driven, 2] = 0.0
+            if driven:
+                assert missing[driven - 1, 2] == pytest.approx(-couple, abs=1e-9 * unit)
+                missing[driven - 1, 2] = 0.0
+        assert np.abs(missing).max() < 1e-9 * unit
+        still = np.zeros((n, 3))
+        for k in range(n):
+            closed = np.flatnonzero(w.closed[k]).tolist()
+            for end in closed:
+                (along, across), _ = rates(state, q, after, still, k, end)
+                assert across == pytest.approx(
+                    w.back[k, end], abs=1e-6 * (1 + np.abs(after).max())
+                )
+                if w.slides[k] == 0 and end == closed[0]:
+                    assert abs(along) < 1e-6 * (1 + np.abs(after).max())
+            if k == driven:
+                (_, across), _ = rates(state, q, after, still, k, int(w.drive[k]))
+                assert across == pytest.approx(
+                    departs, abs=1e-6 * (1 + np.abs(after).max())
+                )
+            if closed and w.slides[k] != 0:
+                rubs = -w.slides[k] * p.kinetic[k] * w.normal[k].sum()
+                assert w.shear[k] == pytest.approx(rubs, abs=1e-9 * unit)
+            if len(closed) == 1:
+                given, other = w.normal[k, closed[0]], w.normal[k, 1 - closed[0]]
+                assert other == pytest.approx(
+                    w.fraction[k, closed[0]] * given, abs=1e-9 * unit
+                )
+    assert laws == {"none", "place", "couple"}
+
+
+def test_the_nearest_velocities_are_those_of_the_least_change_of_energy():
+    rng, compared = np.random.default_rng(6), 0
+    for _ in range(40):
+        state = drawn(rng, True, 0)
+        p, w, n = state.p, state.w, state.count
+        wished = rng.normal(0, 1, w.v.size)
+        wished[3 * n :] = 0.0
+        if not solve.solve_nearest(p, w, wished):
+            continue
+        q, still = rows(w.q, n), np.zeros((n, 3))
+        jacobian = []
+        for k, end in state.closed():
+            moved = [
+                rates(state, q, unit.reshape(n, 3), still, k, end)[0]
+                for unit in np.eye(3 * n)
+            ]
+            jacobian.append([each[1] for each in moved])
+            if w.slides[k] == 0 and end == state.first(k):
+                jacobian.append([each[0] for each in moved])
+        expected = wished[: 3 * n].copy()
+        if jacobian:
+            j, inverse = np.array(jacobian), 1 / state.masses.ravel()
+            push = np.linalg.solve(j * inverse @ j.T, j @ expected)
+            expected -= inverse * (j.T @ push)
+        assert w.out[: 3 * n] == pytest.approx(expected, abs=1e-5)
+        compared += 1
+    assert compared > 30
+
+
+def test_margins_of_a_trial_are_forces_and_motions_over_their_units():
+    """A mode is as far from consistent as its worst force, friction or motion is, by the plain solution."""
+    rng, what = np.random.default_rng(7), set()
+    for _ in range(50):
+        state = drawn(rng, False, 0)
+        p, w, n = state.p, state.w, state.count
+        w.touching[:n] = w.closed[:n]
+        for k in range(n):
+            if w.closed[k].any():
+                w.touching[k] = 1 if w.closed[k].all() else w.touching[k]
+        w.moves[:n] = w.slides[:n]
+        w.along[:n] = w.against[:n] = p.static[:n]
+        prepare(p, w, Trial(RIGHT, UP, False, p.weight, G))
+        found = try_mode(p, w, Trial(RIGHT, UP, False, p.weight, G))
+        if not math.isfinite(found) or not solve.solve_motion(
+            p, w, w.q, w.v, RIGHT, UP
+        ):
+            continue
+        margins = [math.inf]
+        for k, end in state.closed():
+            stiff = max(1.0, p.kinetic[k]) if w.slides[k] else 1.0
+            margins.append(stiff * w.normal[k, end] / p.weight)
+        for k in range(n):
+            if w.closed[k].any() and w.slides[k] == 0:
+                left = p.static[k] * w.normal[k].sum() - abs(w.shear[k])
+                margins.append(left / (max(1.0, p.static[k]) * p.weight))
+        assert found == pytest.approx(
+            min(margins), abs=1e-9 * max(1.0, abs(min(margins)))
+        )
+        if math.isfinite(found):
+            what.add(int(w.flip[1]))
+    assert what == {0, 1, 2}
+
+
+def moving(rng: np.random.Generator) -> State:
+    """Draw a column whose closed ends neither part nor approach, and some of which slide."""
+    while True:
+        state = drawn(rng, False, 0)
+        w = state.w
+        if w.slides.any() and solve.solve_nearest(state.p, w, w.v):
+            w.v = w.out
+            return state
+
+
+def motion_of(state: State, y: np.ndarray, ground: np.ndarray) -> np.ndarray:
+    """Rates of coordinates and velocities of a state."""
+    p, w, size = state.p, state.w, 3 * state.count
+    q, v = np.zeros(w.q.size), np.zeros(w.q.size)
+    q[:size], v[:size] = y[:size], y[size:]
+    solve.look_at(p, w, q)
+    solve.solve_motion(p, w, q, v, *ground)
+    return np.concatenate([y[size:], w.out[:size]])
+
+
+def test_a_step_is_that_of_dormand_and_prince_and_its_books_close():
+    rng, rise = np.random.default_rng(8), np.array([150.0, -100.0])
+    for _ in range(3):
+        state = moving(rng)
+        p, w, n = state.p, state.w, state.count
+        size, h = 3 * n, 2e-3
+        q, v = w.q.copy(), w.v.copy()
+        start = np.concatenate([q[:size], v[:size]])
+        rates = []
+        for c, row in zip(RK45.C, RK45.A, strict=True):
+            y = start + h * sum((a * k for a, k in zip(row, rates, strict=False)), 0.0)
+            rates.append(motion_of(state, y, (RIGHT, UP) + c * h * rise))
+        end = start + h * (RK45.B @ rates)
+        rates.append(motion_of(state, end, (RIGHT, UP) + h * rise))
+        off = np.abs(h * (RK45.E @ rates))[size:].reshape(n, 3) * (1, 1, p.size)
+        w.q, w.v, w.a[:size] = q, v, rates[0][size:]
+        solve.look_at(p, w, w.q)
+        step.start_step(p, w)
+        stretch = step.Stretch(h, RIGHT, UP, *h * rise)
+        work, lost, tied = step.take_step(p, w, stretch, True)
+        found = np.concatenate([w.q1[:size], w.v1[:size]])
+        assert found == pytest.approx(end, abs=1e-12 * np.abs(end).max())
+        assert w.a1[:size] == pytest.approx(rates[-1][size:], rel=1e-9, abs=1e-9)
+        assert step.step_error(p, w, h) == pytest.approx(off.max() / p.speed, rel=1e-4)
+
+        def energy(y, state=state, n=n):
+            q, v = y.reshape(2, n, 3)
+            motion = (state.masses * v * v).sum() / 2
+            return motion + G * (state.masses[:, 1] * q[:, 1]).sum()
+
+        gained = energy(end) - energy(start)
+        assert gained == pytest.approx(work - lost - tied, rel=1e-6, abs=1e-9)
+        assert tied == 0.0 != lost
+        ahead = step.ground_at(step.beginning(stretch, 0.25), 0.4)
+        assert ahead == pytest.approx((RIGHT, UP) + 0.1 * h * rise)
+
+
+def test_margins_of_a_motion_are_gaps_forces_slips_and_turns_over_their_units():
+    rng, seen = np.random.default_rng(14), set()
+    for _ in range(60):
+        state = drawn(rng, False, 0)
+        p, w, n = state.p, state.w, state.count
+        if not solve.solve_motion(p, w, w.q, w.v, RIGHT, UP):
+            continue
+        q, v, still = rows(w.q, n), rows(w.v, n), np.zeros((n, 3))
+        margins, forces = [], []
+        for k in range(n):
+            for end in (0, 1):
+                seen_there = sight(state, q, k, end)
+                beyond = solve.end_of(p, w, w.q, k, end, -1)[5]
+                if not w.closed[k, end]:
+                    margins.append((step.GAP + end, k, seen_there[1] / p.size))
+                    if k and beyond < -2 * p.half[k]:
+                        margins.append((None, k, (2 * p.half[k] + beyond) / p.size))
+                    continue
+                stiff = max(1.0, p.kinetic[k]) if w.slides[k] else 1.0
+                forces.append((step.GAP + end, k, stiff * w.normal[k, end] / p.weight))
+                if k and w.slides[k]:
+                    inside = (-1) ** (not state.over[k, end]) * (1e-9 - beyond / p.size)
+                    margins.append((step.EDGE + end, k, inside))
+            closed = w.closed[k].any()
+            if closed and w.slides[k]:
+                slip = rates(state, q, v, still, k, state.first(k))[0][0]
+                margins.append((step.FRICTION, k, w.slides[k] * slip / p.speed))
+            elif closed:
+                left = p.static[k] * w.normal[k].sum() - abs(w.shear[k])
+                left /= p.weight * max(p.static[k], 1.0)
+                forces.append((step.FRICTION, k, left))
+            turned = [abs(q[k, 2])] + [abs(q[k, 2] - q[k - 1, 2])] * (k > 0)
+            margins.append((step.FALL, k, math.pi / 2 - max(turned)))
+        for with_forces, listed in ((False, margins), (True, margins + forces)):
+            found = step.least_margin(p, w, w.q, w.v, with_forces)
+            assert found == pytest.approx(min(each[2] for each in listed), abs=1e-6)
+            for channel, k, margin in listed:
+                if channel is None or abs(margin) < 1e-6:
+                    continue
+                if channel != step.FALL:
+                    assert w.fails[k, channel] == (margin < 0)
+                    seen.add((channel, margin < 0))
+        assert step.force_fails(p, w) == any(each[2] < 0 for each in forces)
+    # forces and slips of either sign, gaps of one that is open, corners on their side of an edge
+    assert len(seen) == 8
+
+
+def test_what_slides_off_its_face_or_turns_too_far_falls():
+    stack = Column((Block(0.4, 0.2, 30.0), Block(0.3, 0.6, 20.0)))
+    p = plain(system_record(as_system(stack), G))
+    for shift in (0.0, 0.34, 0.36, -0.34, -0.36):
+        w = plain(working_memory())
+        w.q, w.closed[:2], w.slides[1] = p.standing, 1, 1
+        w.q[3] += shift
+        solve.look_at(p, w, w.q)
+        for k, end in itertools.product((0, 1), (0, 1)):
+            w.kind[k, end] = solve.end_of(p, w, w.q, k, end, -1)[6]
+        step.least_margin(p, w, w.q, w.v, False)
+        gone = abs(shift) > 0.35
+        assert step.off_the_edge(p, w, w.q, 1) == gone
+        assert w.fails[1, step.FALL] == gone
+        w.slides[1] = 0
+        step.least_margin(p, w, w.q, w.v, False)
+        assert w.fails[1, step.FALL] == 0
+
+
+def test_a_gap_that_narrows_and_widens_again_is_looked_at():
+    rng, seen = np.random.default_rng(15), set()
+    for _ in range(40):
+        state = drawn(rng, False, 0)
+        p, w, n = state.p, state.w, state.count
+        q, v, still = rows(w.q, n), rows(w.v, n), np.zeros((n, 3))
+        step.start_step(p, w)
+        w.q1, w.v1 = w.q, w.v * rng.choice([-1.0, 1.0], w.v.size)
+        later, expected = rows(w.v1, n), False
+        for k, end in itertools.product(range(n), (0, 1)):
+            if not w.closed[k, end]:
+                before, after = (
+                    rates(state, q, each, still, k, end)[0][1] for each in (v, later)
+                )
+                assert w.early[k, end] == pytest.approx(before, abs=1e-6)
+                expected = expected or (before < 0 < after)
+            else:
+                assert w.early[k, end] == 0.0
+        assert step.comes_near(p, w, 0.01) == expected
+        seen.add(expected)
+    assert seen == {False, True}
+
+
+def test_the_first_failure_of_a_flight_is_where_a_corner_comes_down():
+    """A body that is thrown up: the gap of its lower corner is a parabola and a sine."""
+    block = Block(0.4, 1.0, 80.0)
+    p, w = plain(system_record(as_system(block), G)), plain(working_memory())
+    w.q0[:3], w.v0[:3] = (0.0, 0.56, 0.0), (0.0, 0.2, 1.5)
+    w.a0[:3] = w.a1[:3] = 0.0, -G, 0.0
+    h = 0.16
+    w.q1[:3] = w.q0[:3] + h * w.v0[:3] + h * h / 2 * w.a0[:3]
+    w.v1[:3] = w.v0[:3] + h * w.a0[:3]
+
+    def gap(t):
+        theta = 1.5 * t
+        return (
+            0.56
+            + 0.2 * t
+            - G * t * t / 2
+            - 0.5 * math.cos(theta)
+            - 0.2 * math.sin(theta)
+        )
+
+    expected = brentq(gap, 0.0, h, xtol=1e-15)
+    stretch = step.Stretch(h, 0.0, 0.0, 0.0, 0.0)
+    at_end = step.margin_at(p, w, 1.0, stretch, True)
+    assert at_end == pytest.approx(gap(h) / p.size)
+    found = step.first_failure(p, w, (1.0, at_end, False), stretch)
+    assert found * h == pytest.approx(expected, abs=1e-12)
+    assert w.fails[0].tolist() == [0, 1, 0, 0, 0, 0, 0]
+
+
+def test_between_the_ends_of_a_step_all_lies_on_the_quintic_of_both_ends():
+    rng = np.random.default_rng(9)
+    state = drawn(rng, False, 0)
+    p, w, n = state.p, state.w, state.count
+    h = 0.3
+    curve = np.polynomial.Polynomial
+    each = [curve(rng.normal(0, 1, 6)) for _ in range(3 * n)]
+    for ends, at in (("0", 0.0), ("1", h)):
+        for name, order in (("q", 0), ("v", 1), ("a", 2)):
+            w[name + ends][: 3 * n] = [
+                c.deriv(order)(at) if order else c(at) for c in each
+            ]
+    for tau in (0.0, 0.3, 0.8, 1.0):
+        step.margin_at(p, w, tau, step.Stretch(h, 0.0, 0.0, 0.0, 0.0), False)
+        assert w.q[: 3 * n] == pytest.approx([c(tau * h) for c in each], abs=1e-11)
+        assert w.v[: 3 * n] == pytest.approx(
+            [c.deriv()(tau * h) for c in each], abs=1e-11
+        )
+
+
+def test_pads_bear_what_the_ends_of_their_contact_bear_and_break_where_one_is_overloaded():
+    """The same force and moment about the middle; N/2 ± M/(2 c)."""
+    rng = np.random.default_rng(10)
+    for _ in range(20):
+        state = drawn(rng, False, 2)
+        p, w, k = state.p, state.w, 1
+        w.whole[k], p.is_bonded[k], p.bond_spread[k] = 1, 1, rng.uniform(0.05, 0.3)
+        p.bond_tension[k], p.bond_shear[k] = rng.uniform(10, 500, 2)
+        w.normal[k], w.shear[k] = rng.normal(0, 300, 2), rng.normal(0, 300)
+        left, right = bonds.pad_forces(p, w, k)
+        width = np.linalg.norm(np.subtract(*state.bodies[k].corners))
+        assert left + right == pytest.approx(w.normal[k].sum())
+        moment = (w.normal[k, 1] - w.normal[k, 0]) * width / 2
+        assert (right - left) * p.bond_spread[k] == pytest.approx(moment)
+        assert bonds.pad_force(p, w, k) == min(left, right)
+        holds = p.bond_shear[k] + p.static[k] * (left + right) - abs(w.shear[k])
+        least = min(p.bond_tension[k] + min(left, right), holds)
+        assert bonds.bond_margin(p, w, k) == pytest.approx(least / p.weight, abs=1e-11)
+        bonds.fill_rest_margins(p, w, k, 0)
+        rest = w.rest[4 * k : 4 * k + 4, 0]
+        assert rest.min() == pytest.approx(least / p.weight, abs=1e-11)
+        assert rest[1] - rest[0] == pytest.approx((right - left) / p.weight)
+        assert rest[3] - rest[2] == pytest.approx(2 * w.shear[k] / p.weight)
+        # twice what one pad bears
+        at = p.bond_number[k] = 3
+        bonds.note_loads(p, w)
+        needed = max(0.0, -2 * min(left, right))
+        assert w.outcome.largest_force[at] == pytest.approx(needed)
+
+
+ANCHORS = ((0.9, 0.5, 1.4), (-0.7, 0.2, 0.2))
+
+
+def tied(rng: np.random.Generator, bracket: bool):
+    """A block that is tied to two anchors, somewhere in flight."""
+    block = Block(0.4, 1.0, 80.0)
+    made = [
+        Tie(
+            (0.1, 0.0, 0.9),
+            (x, 0.0, z),
+            4e3,
+            damping=60.0,
+            slack=0.05,
+            strength=900.0,
+            bracket=bracket,
+        )
+        for x, _, z in ANCHORS
+    ]
+    system = hold(as_system(block), *made)
+    p, w = plain(system_record(system, G)), plain(working_memory())
+    w.q[:3] = np.array([0.0, 0.5, 0.0]) + rng.normal(0, 0.1, 3)
+    w.v[:3] = rng.normal(0, 1.0, 3)
+    solve.look_at(p, w, w.q)
+    return p, w
+
+
+@pytest.mark.parametrize("bracket", [False, True])
+def test_ties_pull_from_their_knot_to_their_anchor_by_stretch_and_rate(bracket):
+    rng, changes = np.random.default_rng(11), set()
+    for _ in range(40):
+        p, w = tied(rng, bracket)
+        q, v = w.q[:3].copy(), w.v[:3].copy()
+        expected, taken = np.zeros(3), 0.0
+        w.taut[:2] = rng.choice(
+            [ties.SLACK, ties.TAUT, ties.BROKEN] + [ties.PUSHED] * bracket, 2
+        )
+        for t, (ax, _, az) in enumerate(ANCHORS):
+
+            def way(h, q=q, v=v, ax=ax, az=az):
+                at = q + h * v
+                knot = at[:2] + turn(at[2]) @ (0.1, 0.4)
+                return np.array([ax, az]) - knot
+
+            length = np.linalg.norm(way(0.0))
+            speed = (np.linalg.norm(way(H)) - np.linalg.norm(way(-H))) / (2 * H)
+            start = math.dist((0.1, 0.9), (ax, az))
+            natural = {ties.TAUT: start + 0.05, ties.PUSHED: start - 0.05}.get(
+                int(w.taut[t])
+            )
+            force = 0.0
+            if natural is not None:
+                force = 4e3 * (length - natural) + 60.0 * speed
+            found, rate = ties.tension(p, w, w.q, w.v, t)
+            assert found == pytest.approx(force, abs=1e-4)
+            assert rate == pytest.approx(speed, abs=1e-6)
+            unit, arm = way(0.0) / length, turn(q[2]) @ (0.1, 0.4)
+            expected += force * np.array([*unit, unit[0] * arm[1] - unit[1] * arm[0]])
+            taken += force * speed
+        ties.fill_tie_accelerations(p, w, w.q, w.v)
+        masses = 1 / np.array(p.inverse[:3])
+        assert w.drift[:3] * masses == pytest.approx(expected, abs=1e-3)
+        assert ties.power(p, w, w.q, w.v) == pytest.approx(taken, abs=1e-3)
+        # what the ties take is what they do not give to the bodies
+        assert ties.power(p, w, w.q, w.v) == pytest.approx(
+            -(w.drift[:3] * masses) @ v, abs=1e-9
+        )
+        states = w.taut[:2].copy()
+        forces = [ties.tension(p, w, w.q, w.v, t)[0] for t in (0, 1)]
+        ties.least_tie_margin(p, w, w.q, w.v)
+        fails = w.tie_fails[:2].copy()
+        ties.change_ties(p, w, 3.0)
+        for t in (0, 1):
+            before, after = int(states[t]), int(w.taut[t])
+            changes.add((before, after))
+            length = ties._stretched(p, w, w.q, w.v, t)[4]
+            if before == ties.SLACK:
+                # taut where it is longer than its slack lets it and would pull, and likewise shorter
+                now = []
+                for state in (ties.TAUT, *[ties.PUSHED] * bracket):
+                    w.taut[t] = state
+                    natural = p.tie_long[t] if state == ties.TAUT else p.tie_short[t]
+                    force = ties.tension(p, w, w.q, w.v, t)[0]
+                    if state * (length - natural) > 1e-9 and state * force > 1e-9:
+                        now.append(state)
+                assert [after] == (now or [ties.SLACK])
+                assert bool(fails[t]) == bool(now)
+            elif before == ties.BROKEN:
+                assert after == ties.BROKEN
+            else:
+                expected_state = before
+                if before * forces[t] < -1e-9:
+                    expected_state = ties.SLACK
+                if abs(forces[t]) > 900.0:
+                    expected_state = (
+                        ties.BROKEN
+                        if before * forces[t] > 0 or abs(forces[t]) >= 900
+                        else before
+                    )
+                assert after == expected_state
+    assert len(changes) >= 6 + bracket
+
+
+def test_a_tie_moves_the_body_that_it_holds_and_no_other():
+    """Two bodies in flight: both fall, and one is drawn towards the anchor."""
+    stack = Column((Block(0.4, 0.3, 30.0), Block(0.3, 0.6, 20.0)))
+    tie = Tie((0.0, 0.0, 0.6), (2.0, 0.0, 0.9), 500.0, slack=0.02)
+    p = plain(system_record(hold(as_system(stack), tie), G))
+    w = plain(working_memory())
+    w.q, w.drive[:] = p.standing, -1
+    w.q[3] -= 0.1
+    w.taut[0] = ties.TAUT
+    solve.look_at(p, w, w.q)
+    assert solve.solve_motion(p, w, w.q, w.v, 0.0, 0.0)
+    force = 500.0 * 0.08
+    expected = [[0.0, -G, 0.0], [force / 20.0, -G, force * 0.3 / p.inertia[1]]]
+    assert rows(w.out, 2) == pytest.approx(np.array(expected))
+
+
+def held_margins(p, w, forces=True):
+    """Least margin of a state of what is held, and the flags of its contacts."""
+    solve.look_at(p, w, w.q)
+    return step.least_margin(p, w, w.q, w.v, forces), w.fails.copy()
+
+
+def test_what_holds_a_body_has_margins_of_its_own():
+    block = as_system(Block(0.4, 1.0, 80.0))
+    bond = Bond(100.0, 1e9, 0.1)
+    p, w = plain(system_record(hold(block, bonds=bond), G)), plain(working_memory())
+    w.q, w.closed[0], w.kind[:], w.whole[0] = p.standing, 1, 1, 1
+    solve.look_at(p, w, w.q)
+    for left, holds in ((-45.0, True), (-55.0, False)):
+        # both pads at half of the ends' distance from the middle
+        w.normal[0] = 100.0 + left / 2, 300.0 - left / 2
+        assert min(bonds.pad_forces(p, w, 0)) == pytest.approx(left)
+        least, fails = held_margins(p, w)
+        assert (least > 0) == holds
+        assert fails[0, step.BREAK] == (not holds)
+        assert step.force_fails(p, w) == (not holds)
+        assert held_margins(p, w, forces=False)[0] > 0
+    # a tie that is as long as it may be, beside a contact that is far from failing
+    tie = Tie((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), 1e4, slack=0.01)
+    p, w = plain(system_record(hold(block, tie), G)), plain(working_memory())
+    for aside, slack in ((-0.005, True), (-0.015, False)):
+        w.q, w.closed[0], w.kind[:] = p.standing, 1, 1
+        w.q[0] += aside
+        w.normal[0] = 400.0
+        least, _ = held_margins(p, w)
+        assert (least > 0) == slack
+        longer = -0.01 - aside
+        expected = max(-longer / p.size, -1e4 * longer / p.weight)
+        assert least == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_body_passes_a_kerb_once_its_whole_side_is_above_it_and_beyond(side):
+    kerb = Wall(0.3, 0.0 if side > 0 else math.pi, 0.2)
+    block = as_system(Block(0.4, 1.0, 80.0))
+    p, w = plain(system_record(hold(block, kerb), G)), plain(working_memory())
+    for up, aside, above, over in (
+        *(
+            (0.1, 0.05, False, False),
+            (0.25, 0.05, True, False),
+            (0.25, 0.15, True, True),
+        ),
+    ):
+        w.q, w.closed[:], w.kind[:] = p.standing, 0, 1
+        w.q[:2] += side * aside, up
+        _, fails = held_margins(p, w)
+        assert walls.is_above(p, w, w.q, 1) == above
+        assert walls.climbs(p, w, w.q, 1) == over
+        assert fails[1, step.FALL] == over
+        assert fails[1, step.BREAK] == 0
+        # what rested on its edge has left it
+        w.closed[1, 1 if side > 0 else 0] = 1
+        assert held_margins(p, w)[1][1, step.BREAK] == above
+
+
+@pytest.mark.parametrize(("early", "late"), [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+@pytest.mark.parametrize("bracket", [False, True])
+@pytest.mark.parametrize("near", [-0.04, 0.0, 0.04])
+def test_a_slack_tie_that_turns_back_near_its_length_is_looked_at(
+    early, late, bracket, near
+):
+    """Its slack is 0.05 m to either side; it may move by 0.02 m in the step."""
+    block = Block(0.4, 1.0, 80.0)
+    tie = Tie((0.0, 0.0, 0.5), (2.0, 0.0, 0.5), 4e3, slack=0.05, bracket=bracket)
+    p = plain(system_record(hold(as_system(block), tie), G))
+    w = plain(working_memory())
+    w.q[:3], w.v[:3] = (-near, 0.5, 0.0), (-early, 0.0, 0.0)
+    solve.look_at(p, w, w.q)
+    w.a[:] = 0.0
+    step.start_step(p, w)
+    w.q1, w.v1[:3] = w.q, (-late, 0.0, 0.0)
+    may = near > 0 or (bracket and near < 0)
+    assert ties.turns_back(p, w, 0.02) == (may and early != late)
+
+
+def test_a_low_wall_is_met_by_a_corner_below_its_top_and_by_its_edge_above():
+    """Gaps by geometry, whatever the side of the wall, and none once the whole side is above its top."""
+    rng, kinds = np.random.default_rng(12), set()
+    block = Block(0.4, 1.0, 80.0, lean=0.1)
+    for _ in range(60):
+        side, top = float(rng.choice([-1.0, 1.0])), float(rng.choice([math.inf, 0.6]))
+        wall = Wall(0.5, 0.0 if side > 0 else math.pi, top)
+        p = plain(system_record(hold(as_system(block), wall), G))
+        w = plain(working_memory())
+        w.q[:3] = rng.normal(0, 0.1), 0.5 + rng.uniform(0, 0.3), rng.normal(0, 0.4)
+        solve.look_at(p, w, w.q)
+        q, x_wall = w.q[:3], 0.5 * side
+        ends = tuple(q[:2] + turn(q[2]) @ p.edge[1, end] for end in (0, 1))
+        lower, upper = ends if side > 0 else ends[::-1]
+        # the side leans with its block
+        assert abs(np.subtract(*p.edge[1])[0]) > 0.05
+        for end, corner in enumerate(ends):
+            x, y, tx, ty, gap, beyond, kind = solve.end_of(p, w, w.q, 1, end, -1)
+            normal = np.array([-ty, tx])
+            is_upper = corner is upper
+            if lower[1] > top:
+                assert gap == math.inf
+                continue
+            if (
+                not is_upper
+                or top == math.inf
+                or (upper[1] <= top and side * (x_wall - upper[0]) > -1e-9)
+            ):
+                assert kind == 1
+                assert (x, y) == pytest.approx(corner)
+                assert normal == pytest.approx((-side, 0.0))
+                assert gap == pytest.approx(side * (x_wall - corner[0]))
+            elif kind == 0:
+                # the edge's distance from the line of the side
+                flank = (upper - lower) / np.linalg.norm(upper - lower)
+                outwards = side * np.array([flank[1], -flank[0]])
+                assert (x, y) == pytest.approx((x_wall, top))
+                assert normal == pytest.approx(-outwards)
+                assert gap == pytest.approx(
+                    outwards @ (np.array([x_wall, top]) - lower)
+                )
+                over = max(upper[1] - top, side * (upper[0] - x_wall))
+                assert beyond == pytest.approx(over)
+            kinds.add((side, int(kind)))
+            assert walls.is_above(p, w, w.q, 1) == (lower[1] > top)
+    assert kinds == {(s, k) for s in (-1.0, 1.0) for k in (0, 1)}
+
+
+def test_a_bilinear_spring_yields_at_its_strength_and_unloads_along_its_first_stiffness():
+    isolator = BilinearIsolator(
+        mass=20.0, stiffness=400.0, strength=50.0, yield_displacement=0.01
+    )
+    block = as_system(Block(0.4, 1.0, 80.0))
+    p = plain(system_record(hold(block, support=isolator), G))
+    w = plain(working_memory())
+    rise = p.spring_rise
+    assert p.spring_strength == pytest.approx(50.0)
+    path = np.concatenate([np.linspace(0, 0.1, 101), np.linspace(0.1, -0.1, 201)])
+    for before, at in itertools.pairwise(path):
+        w.q[0] = p.standing[0] + at
+        w.v[0] = at - before
+        if support.least_support_margin(p, w, w.q, w.v) < 0:
+            support.change_spring(p, w)
+        force = support.hysteretic_force(p, w, w.q)
+        assert abs(force) <= 50.0 + rise * 0.0011
+        assert support.spring_force(p, w, w.q) == pytest.approx(
+            p.spring_stiffness * at + force
+        )
+    assert w.yields == -1
+
+
+def test_kinetic_energy_is_that_of_all_bodies():
+    rng = np.random.default_rng(13)
+    state = drawn(rng, True, 0)
+    v = rows(state.w.v, state.count)
+    expected = (state.masses * v * v).sum() / 2
+    assert impacts.kinetic_energy(state.p, state.w.v) == pytest.approx(expected)

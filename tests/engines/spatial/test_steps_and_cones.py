@@ -1,0 +1,322 @@
+"""Steps of a body in space beside SciPy's, and its impulses beside the conditions of contact that define them.
+
+Kernels are called one by one, as plain Python.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import RK45, solve_ivp
+
+from ...mutants.plain import plain_library
+from .test_statements import (
+    G,
+    attitude,
+    case,
+    forces,
+    inverse_mass,
+    jacobian,
+    leaning,
+    mode,
+    modes,
+    point,
+    rotation,
+    set_down,
+    solid,
+    state,
+    step,
+    stick,
+    uneven,
+)
+from .test_statements import cone as cones
+
+with plain_library():
+    from rockfrag.engines.spatial import _algebra as algebra
+
+MODES = {
+    "flight": ((), ()),
+    "pivot": ((2,), (0,)),
+    "slider": ((1,), (1,)),
+    "hinge": ((3, 4), (0, 0)),
+    "edge that slides at one end": ((3, 4), (0, 1)),
+    "edge that slides": ((1, 2), (1, 1)),
+}
+
+
+def in_mode(rng, name):
+    """A body in a mode, in a state that obeys it, on ground that moves."""
+    closed, slides = MODES[name]
+    body, s = uneven(rng), case()
+    s.field[:6] = rng.normal(0, 2, 6)
+    s.field[2] -= G
+    y = state(rng, body)
+    y[7:10] *= 3
+    mode(s, *closed)
+    s.slides[: len(closed)] = slides
+    if closed:
+        modes.close_gaps(body, y, rotation(y), s)
+        modes.hold(body, y, rotation(y), s)
+        modes.anchor_all(body, y, s)
+        modes.settle(body, y, s)
+    return body, y, s
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_a_step_goes_where_the_equations_of_motion_lead(name):
+    rng, tau, h = np.random.default_rng(1), 0.02, 2e-3
+    for _ in range(2):
+        body, y, s = in_mode(rng, name)
+
+        def motion(time, y, body=body, s=s):
+            slope = np.zeros(solid.SIZE)
+            forces.rates(body, tau + time, y, slope, s)
+            return slope
+
+        exact = solve_ivp(motion, (0, h), y, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+        at_end = motion(h, exact)
+        pushed = s.lam.copy()
+        s.slopes[:], s.lam[:] = 0.0, 0.0
+        step.begin(body, tau, y, s)
+        error = step.attempt(body, tau, h, y, s)
+        assert s.new == pytest.approx(exact, abs=1e-9)
+        assert 0.0 < error < 1e-6
+        n = s.count
+        assert s.lam[:n] == pytest.approx(pushed[:n], abs=1e-5)
+        # a body that is pushed so moves so
+        assert at_end[7:10] == pytest.approx(
+            s.field[:3] + (tau + h) * s.field[3:6] + s.lam[:n].sum(axis=0), abs=1e-5
+        )
+        gained = solid.energy(body, s.new, G) - solid.energy(body, y, G)
+        work, rubbed = s.new[13:15] - y[13:15]
+        assert gained == pytest.approx(work - rubbed, abs=1e-9)
+
+
+def test_the_error_of_a_step_is_the_largest_part_of_the_pairs_difference():
+    rng, h = np.random.default_rng(2), 5e-3
+    body, y, s = in_mode(rng, "slider")
+    step.begin(body, 0.0, y, s)
+    error = step.attempt(body, 0.0, h, y, s)
+    off = np.abs(h * (RK45.E @ s.slopes))[:13]
+    scale = 1 + np.abs(y[:13])
+    up = attitude(y)[2]
+    # the attitude counts by as much as the body leans
+    scale[3:7] = min(1.0, 1e3 * math.hypot(up[0], up[1]) + 1e-4)
+    assert error == pytest.approx((off / scale).max(), rel=1e-9)
+
+
+def test_both_ends_of_an_edge_bear_the_same_part_of_what_they_could_along_it():
+    rng = np.random.default_rng(3)
+    uneven_ends = 0
+    for _ in range(10):
+        body, y, s = in_mode(rng, "hinge")
+        body.static = 3.0
+        forces.rates(body, 0.0, y, np.zeros(solid.SIZE), s)
+        r = attitude(y)
+        edge = r @ (point(body, 4) - point(body, 3))
+        edge /= np.linalg.norm(edge)
+        parts = []
+        for push in s.lam[:2]:
+            along = push @ edge
+            across = push - along * edge
+            room = (3.0 * across[2]) ** 2 - across[0] ** 2 - across[1] ** 2
+            parts.append((along, math.sqrt(max(room, 0.0))))
+        (first, room_first), (second, room_second) = parts
+        assert first * room_second == pytest.approx(second * room_first, abs=1e-9)
+        uneven_ends += abs(room_first - room_second) > 0.2 * (room_first + room_second)
+        # Euler's equation about the centre
+        turned = sum(
+            np.cross(point(body, i), r.T @ s.lam[k]) for k, i in enumerate((3, 4))
+        )
+        spin = y[10:13]
+        rates = np.zeros(solid.SIZE)
+        forces.rates(body, 0.0, y, rates, s)
+        expected = body.inertia @ rates[10:13] + np.cross(spin, body.inertia @ spin)
+        assert turned == pytest.approx(expected, abs=1e-9)
+    assert uneven_ends > 2
+
+
+def struck(rng, touch, mu):
+    """A body some of whose points touch and approach, with its small system of contacts."""
+    body, s = uneven(rng), case()
+    body.static = body.kinetic = mu
+    y = state(rng, body)
+    if len(touch) > 2:
+        set_down(y, body)
+    y[9] = -abs(y[9]) - 0.2
+    s.which[: len(touch)] = touch
+    rows = rotation(y)
+    momentum = stick.fill_velocities(body, y, rows, len(touch), s)
+    modes.note_slips(body, len(touch), s)
+    return body, y, rows, momentum, s
+
+
+@pytest.mark.parametrize("touch", [(2,), (1, 2), (0, 3), (0, 2, 4), (0, 1, 3, 4)])
+def test_impulses_obey_the_conditions_of_contact_with_coulombs_cone(touch):
+    rng, n, kinds, missing = np.random.default_rng(4), len(touch), set(), 0
+    for _ in range((30, 30, 12, 4)[n - 1]):
+        mu = rng.uniform(0.05, 1.2)
+        body, y, rows, momentum, s = struck(rng, touch, mu)
+        found, solutions = modes.solve(body, y, rows, n, 0, momentum, s)
+        if found < 0:
+            missing += 1
+            continue
+        j = np.vstack([jacobian(y, point(body, i)) for i in touch])
+        push = np.array(s.impulse[: 3 * n])
+        u = j @ (y[7:13] + inverse_mass(body) @ j.T @ push)
+        assert s.after[: 3 * n] == pytest.approx(u, abs=1e-8)
+        before = j @ y[7:13]
+        if (before[2::3] >= 0).all():
+            assert not push.any()
+            continue
+        for k in range(n):
+            normal, shear = push[3 * k + 2], push[3 * k : 3 * k + 2]
+            apart, slip = u[3 * k + 2], u[3 * k : 3 * k + 2]
+            assert normal > -1e-9 and apart > -1e-8
+            assert abs(normal * apart) < 1e-8
+            assert np.hypot(*shear) <= mu * normal + 1e-8
+            if normal > 1e-6 and np.hypot(*slip) > 1e-6:
+                assert shear == pytest.approx(
+                    -mu * normal * slip / np.hypot(*slip), abs=1e-6
+                )
+                kinds.add("slides")
+            elif normal > 1e-6:
+                kinds.add("sticks")
+            else:
+                kinds.add("parts")
+        assert solutions >= 1
+        assert found == sum((push[3 * k + 2] > 0) << k for k in range(n)) or n > 2
+        # nothing gains energy
+        change = 0.5 * push @ (before + u)
+        assert change <= 1e-12
+        assert cones.change_of_energy(s, n) == pytest.approx(change, abs=1e-9)
+    assert {"slides", "sticks"} <= kinds or n > 2
+    assert kinds
+    assert missing <= 2
+
+
+def test_of_outcomes_of_one_size_the_one_with_the_least_energy_is_taken():
+    """A body that falls flat: one contact of four does, and several are tried."""
+    rng, several = np.random.default_rng(56), 0
+    for _ in range(5):
+        body, y, rows, momentum, s = struck(rng, (0, 1, 3, 4), 20.0)
+        found, solutions = modes.solve(body, y, rows, 4, 0, momentum, s)
+        assert found >= 0
+        if solutions < 2:
+            continue
+        several += 1
+        size = bin(found).count("1")
+        j = np.vstack([jacobian(y, point(body, i)) for i in (0, 1, 3, 4)])
+        w, free = j @ inverse_mass(body) @ j.T, j @ y[7:13]
+        chosen = cones.change_of_energy(s, 4)
+        for mask in range(16):
+            if bin(mask).count("1") != size:
+                continue
+            rows_of = [3 * k + c for k in range(4) if mask >> k & 1 for c in range(3)]
+            push = np.zeros(12)
+            push[rows_of] = np.linalg.lstsq(
+                w[np.ix_(rows_of, rows_of)], -free[rows_of], rcond=1e-10
+            )[0]
+            after = free + w @ push
+            if (push[2::3] >= -1e-9).all() and (after[2::3] >= -1e-9).all():
+                assert chosen <= 0.5 * push @ (free + after) + 1e-9
+    assert several > 0
+
+
+def test_static_friction_holds_what_has_not_slipped_and_kinetic_brakes_what_has():
+    """One contact, between both coefficients (Routh): a shear along the old slip is static, against it kinetic."""
+    rng, seen = np.random.default_rng(6), set()
+    while len(seen) < 2:
+        body, y, rows, momentum, s = struck(rng, (2,), 0.0)
+        j = jacobian(y, point(body, 2))
+        w, free = j @ inverse_mass(body) @ j.T, j @ y[7:13]
+        stuck = np.linalg.solve(w, -free)
+        ratio = np.hypot(*stuck[:2]) / stuck[2]
+        body.static, body.kinetic = 1.1 * ratio, 0.9 * ratio
+        modes.note_slips(body, 1, s)
+        # what has not slipped sticks
+        s.slid[0] = 0
+        modes.solve(body, y, rows, 1, 0, momentum, s)
+        assert s.impulse[:3] == pytest.approx(stuck)
+        s.slid[0] = 1
+        modes.solve(body, y, rows, 1, 0, momentum, s)
+        shear, normal = np.hypot(s.impulse[0], s.impulse[1]), s.impulse[2]
+        if stuck[:2] @ free[:2] < 0:
+            assert shear == pytest.approx(body.kinetic * normal)
+            seen.add("against")
+        else:
+            seen.add("along")
+
+
+def test_systems_are_solved_and_factored_as_numpy_does():
+    rng = np.random.default_rng(7)
+    for size in (2, 3, 6):
+        for _ in range(5):
+            m, r = rng.normal(size=(size, size)), rng.normal(size=size)
+            expected = np.linalg.solve(m, r)
+            matrix, order, x = m.copy(), np.zeros(size, int), r.copy()
+            assert algebra.factor(matrix, order, size)
+            algebra.substitute(matrix, order, size, x)
+            assert x == pytest.approx(expected)
+    assert not algebra.factor(np.zeros((2, 2)), np.zeros(2, int), 2)
+    m = rng.normal(size=(3, 3))
+    m = m @ m.T
+    found = algebra.solve_symmetric(
+        m[0, 0], m[0, 1], m[0, 2], m[1, 1], m[1, 2], m[2, 2], r[:3]
+    )
+    assert found == pytest.approx(np.linalg.solve(m, r[:3]))
+
+
+def test_a_small_turn_of_the_attitude_is_the_one_of_its_rotation_vector():
+    rng = np.random.default_rng(8)
+    y = state(rng, uneven(rng))
+    before, angle = attitude(y), 1e-6 * rng.normal(size=3)
+    algebra.turn(y, angle)
+    skew = np.cross(np.eye(3), angle)
+    assert attitude(y) == pytest.approx(before @ (np.eye(3) + skew), abs=1e-11)
+    assert np.linalg.norm(y[3:7]) == pytest.approx(1.0, abs=1e-15)
+
+
+@pytest.mark.parametrize(("spread", "touches"), [(0.9, False), (1.2, True)])
+def test_a_point_that_dips_within_a_step_is_looked_at(spread, touches):
+    """A parabola with rates -1 and 1 over 0.1 s sinks by 0.025; a fiftieth of them is for safety."""
+    gap = (0.025 + 0.004) / spread
+    assert step.touches_between(gap, -1.0, 1.0, 0.1) == touches
+    assert not step.touches_between(gap, 1.0, 1.0, 0.1)
+    assert not step.touches_between(gap, -1.0, -1.0, 0.1)
+
+
+def test_a_bond_bears_half_of_what_its_pads_would_have_to_on_either_side():
+    """Pull and moments about both axes over the distance of the pads; shear beside friction."""
+    rng = np.random.default_rng(9)
+    body, y = uneven(rng), np.zeros(solid.SIZE)
+    y[3] = 1.0
+    for _ in range(10):
+        body.tension, body.shear, body.static = (
+            rng.uniform(5, 20),
+            rng.uniform(1, 9),
+            0.4,
+        )
+        body.pads[:] = rng.uniform(0.1, 0.3, 2)
+        body.aside[:] = rng.normal(0, 0.02, 2)
+        pull = np.array([*rng.normal(0, 3, 2), -G])
+        moments = body.height * pull[:2] + G * np.array(body.aside)
+        needed = 0.5 * (-G + (np.abs(moments) / body.pads).sum())
+        found = modes.bond_tension(body, rotation(y), pull)
+        assert found == pytest.approx(needed)
+        shear = body.shear + 0.4 * G - np.hypot(*pull[:2])
+        margin = modes.bond_margin(body, rotation(y), pull)
+        assert margin == pytest.approx(min(body.tension - 2 * needed, shear))
+        assert modes.pulled_off(body, pull) == (np.hypot(*pull[:2]) > 0.4 * G)
+
+
+@pytest.mark.parametrize(
+    ("place", "flat"), [(0, True), (9, False), (10, False), (11, False)]
+)
+def test_a_body_lies_flat_only_where_it_neither_leans_nor_turns_nor_rises(place, flat):
+    body = uneven(np.random.default_rng(10))
+    y = leaning(body, 0.0, 0.0)
+    y[place] += 1e-3
+    assert modes.lies_flat(body, y, rotation(y)) == flat
+    y = leaning(body, 1e-3, 0.4)
+    assert not modes.lies_flat(body, y, rotation(y))
