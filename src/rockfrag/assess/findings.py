@@ -144,7 +144,7 @@ def few_earthquakes(found: Assessment) -> bool:
 
 
 def _who(found: Assessment) -> dict[str, Value]:
-    return {"name": found.request.called, "where": found.request.place.where}
+    return {"name": found.request.called, "where": found.request.where}
 
 
 def _amount(found: Assessment, value: float) -> Finding:

@@ -118,7 +118,7 @@ class _Layout:
         lead = finding(
             Text.PAGE_LEAD,
             name=found.request.called,
-            where=found.request.place.where,
+            where=found.request.where,
             motions=found.motions.about_set,
         )
         return Page(
