@@ -285,7 +285,10 @@ class _Layout:
         found = self.found
         rows = []
         for effect in found.effects:
-            spread = finding(Text.CELL_SD, value=said.two(100 * effect.spread))
+            # a direction is moved by an angle
+            spread: Value = "–"
+            if effect.spread > 0:
+                spread = finding(Text.CELL_SD, value=said.two(100 * effect.spread))
             sides = [value_of(found, side) for side in effect.sides]
             rows.append((SOURCES[effect.name].called, spread, *sides))
         titles = [

@@ -674,10 +674,17 @@
   }
   // of what moves in space and was tried in a plane, how it is had in space, if at all
   const OPTIONS = { bracket: "--bracket", cord: "--cord" };
-  function inPlaneAlone({ solid, hold: { kind } }, inSpace, asked) {
+  const standing = (there) => {
+    if (!there) return [];
+    return there.kind === "wall"
+      ? [`--wall ${100 * there.value}cm`]
+      : ["--casters free"];
+  };
+  function inPlaneAlone({ solid, hold: { there, kind } }, inSpace, asked) {
     if (!solid || inSpace) return [];
     if (!OPTIONS[kind]) return [say("tried_in_plane_alone")];
-    return [say("tried_in_plane", { option: `${OPTIONS[kind]} ${asked.bears}N` })];
+    const option = [...standing(there), `${OPTIONS[kind]} ${asked.bears}N`].join(" ");
+    return [say("tried_in_plane", { option })];
   }
   function compare({ fraction, probability }, after, stands = say("before")) {
     computed("helping");
