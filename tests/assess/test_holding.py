@@ -314,3 +314,23 @@ def test_numbers_of_its_page_stay_on_a_line_with_their_units(found):
         assert len(re.findall(r"\d\u00a0(?:%|cm|N)", text)) > 20
         apart = r"\d (?:%|[cmk]?m|s|g|k?g|k?N(?:/m)?|[cm]m/s|kg/m³)(?![\w/])"
         assert re.findall(rf".*{apart}.*", text) == []
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"depth": "50 cm", "isolator": "10 cm"}, "key isolator: .* its depth makes"),
+        ({"round": True, "wall": "5 cm"}, "key wall: .* its round base makes"),
+        (
+            {"depth": "50 cm", "wall": "5 cm", "wall_height": "9 cm"},
+            "key wall: .* its depth makes",
+        ),
+    ],
+)
+def test_what_is_not_simulated_in_space_is_refused_with_what_to_leave_out(
+    settings, words, few
+):
+    """It spoke of second components and of bodies with a base and a face, which no key gives."""
+    request = asked(width="35 cm", height="120 cm", pga="0.6 g", **settings)
+    with pytest.raises(InputError, match=rf"^{words} .*; leave out one of them\.$"):
+        assess_with(request, few)

@@ -78,6 +78,10 @@ class Holder(ABC):
     def short(self) -> Finding:
         """Its name, without what it bears."""
 
+    def holds_in_space(self, solid: System) -> bool:
+        """Whether it is simulated of an object in space."""
+        return True
+
     @property
     def bears(self) -> float:
         """Demand at which it fails [N], or at which it meets its stop [m]; infinite where neither is asked."""
@@ -203,6 +207,10 @@ class Isolator(Holder):
     demand: ClassVar[str] = "stroke"
     slow: ClassVar[bool] = True
 
+    def holds_in_space(self, solid: System) -> bool:
+        """In one plane only."""
+        return False
+
     def on(self, system: System) -> System:
         """Put a plate under the lowest body."""
         return hold(system, support=self._support(PLATE * system.mass, system.mass))
@@ -311,6 +319,10 @@ class Beside(Holder):
         if self.height < math.inf:
             return finding(Text.HELD_BY_LOW_WALL, height=two(100 * self.height))
         return finding(Text.HELD_BY_WALL)
+
+    def holds_in_space(self, solid: System) -> bool:
+        """As a wall of any height, beside what has corners."""
+        return self.height == math.inf and not isinstance(solid.bodies[0].base, Circle)
 
     def on(self, system: System) -> System:
         """Set a wall beside the lowest body, in the direction of its narrower side."""
