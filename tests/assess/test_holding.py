@@ -35,6 +35,7 @@ from rockfrag.base.units import GRAVITY
 from rockfrag.system import as_system
 from rockfrag.system.body import Circle, Interval, Polygon
 from rockfrag.words.catalogue import catalogue
+from rockfrag.words.findings import percent
 
 from .conftest import asked
 
@@ -303,6 +304,18 @@ def test_the_first_sentence_at_every_door_names_what_holds_it(few):
     assert page.count(f"{said} is ") >= 2
     assert f'<p class="lead">{said}, shaken by' in page
     assert "L'oggetto a terra con cera o mastice" in " ".join(lines_of(answer, "it"))
+
+
+def test_its_page_takes_off_the_answer_what_a_change_takes_off(found):
+    """A bracket that takes off a third stood beside an answer from which a twentieth was off."""
+    rows = re.findall(
+        r'<tr><td[^>]* data-title="Change">(.*?)</td><td[^>]*>(.*?)</td>',
+        page_of(found),
+    )
+    assert len(rows) == len(found.mitigations) > 5
+    for (_, said), change in zip(rows, found.mitigations, strict=True):
+        left = min(found.main.value * change.factor, 1.0)
+        assert said.replace("\u00a0", " ").lower() == catalogue().say(percent(left))
 
 
 def test_numbers_of_its_page_stay_on_a_line_with_their_units(found):
