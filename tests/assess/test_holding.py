@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+from html import unescape
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ from rockfrag import Block, overturns
 from rockfrag.assess import holding
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.export import as_json
-from rockfrag.assess.findings import details_of
+from rockfrag.assess.findings import details_of, lines_of
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.page import page_of
 from rockfrag.assess.standing.holders import (
@@ -32,6 +34,8 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
 from rockfrag.system import as_system
 from rockfrag.system.body import Circle, Interval, Polygon
+from rockfrag.words.catalogue import catalogue
+from rockfrag.words.findings import percent
 
 from .conftest import asked
 
@@ -246,3 +250,100 @@ def test_strengths_take_any_unit_of_force_and_none_is_guessed(tmp_path):
     assert [each.bears for each in request.objects.under.holders] == pytest.approx(
         [15 * 9.80665, 90.0]
     )
+
+
+HELD = {
+    "putty": ({"putty": "120 N"}, "wax or putty", "cera o mastice"),
+    "bracket": ({"bracket": "300 N"}, "a bracket", "una staffa"),
+    "cord": ({"cord": "300 N"}, "cords", "cavi"),
+    "wall": ({"wall": "5 cm"}, "a wall behind it", "un muro dietro"),
+    "kerb": (
+        {"wall": "5 cm", "wall_height": "10 cm"},
+        "a wall 10 cm high behind it",
+        "un muro alto 10 cm dietro",
+    ),
+    "pendulum": (
+        {"isolator": "20 cm"},
+        "a sliding isolator",
+        "un isolatore a scorrimento",
+    ),
+    "springs": (
+        {
+            "isolator": "20 cm",
+            "isolator_stiffness": "1.8 kN/m",
+            "isolator_strength": "90 N",
+        },
+        "a bilinear isolator",
+        "un isolatore bilineare",
+    ),
+    "casters": ({"casters": "free"}, "casters that roll", "ruote che girano"),
+    "locked": ({"casters": "locked"}, "locked casters", "ruote bloccate"),
+}
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_where_it_stands_names_what_holds_it(name):
+    settings, english, italian = HELD[name]
+    request = asked(**BOX, pga="0.3 g", **settings)
+    assert catalogue().say(request.where) == f"on the ground with {english}"
+    assert catalogue("it").say(request.where) == f"a terra con {italian}"
+    both = asked(**BOX, pga="0.3 g", floor="1/3", **settings | {"putty": "1 kN"})
+    said = catalogue().say(both.where)
+    assert said.startswith("on level 1 of 3 with wax or putty")
+    assert english in said
+
+
+def test_the_first_sentence_at_every_door_names_what_holds_it(few):
+    """It said "the object on the ground" of one that stands on an isolator."""
+    held = asked(**BOX, pga="0.6 g", putty="2 kN")
+    answer = assess_with(held, few, brief=True)
+    said = "The object on the ground with wax or putty"
+    assert lines_of(answer)[0].startswith(said)
+    assert json.loads(as_json(answer))["lines"][0].startswith(said)
+    page = page_of(answer)
+    assert page.count(f"{said} is ") >= 2
+    assert f'<p class="lead">{said}, shaken by' in page
+    assert "L'oggetto a terra con cera o mastice" in " ".join(lines_of(answer, "it"))
+
+
+def test_its_page_takes_off_the_answer_what_a_change_takes_off(found):
+    """A bracket that takes off a third stood beside an answer from which a twentieth was off."""
+    rows = re.findall(
+        r'<tr><td[^>]* data-title="Change">(.*?)</td><td[^>]*>(.*?)</td>',
+        page_of(found),
+    )
+    assert len(rows) == len(found.mitigations) > 5
+    for (_, said), change in zip(rows, found.mitigations, strict=True):
+        left = min(found.main.value * change.factor, 1.0)
+        assert said.replace("\u00a0", " ").lower() == catalogue().say(percent(left))
+
+
+def test_numbers_of_its_page_stay_on_a_line_with_their_units(found):
+    for language in ("en", "it"):
+        page = page_of(found, language)
+        shown = re.sub(r"<(style|script|svg)\b.*?</\1>", "", page, flags=re.DOTALL)
+        text = unescape(re.sub(r"<[^>]+>", "\n", shown))
+        assert "PGA 0.6\u00a0g" in text.replace(",", ".")
+        assert len(re.findall(r"\d\u00a0(?:%|cm|N)", text)) > 20
+        apart = r"\d (?:%|[cmk]?m|s|g|k?g|k?N(?:/m)?|[cm]m/s|kg/m³)(?![\w/])"
+        assert re.findall(rf".*{apart}.*", text) == []
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"depth": "50 cm", "isolator": "10 cm"}, "key isolator: .* its depth makes"),
+        ({"round": True, "wall": "5 cm"}, "key wall: .* its round base makes"),
+        (
+            {"depth": "50 cm", "wall": "5 cm", "wall_height": "9 cm"},
+            "key wall: .* its depth makes",
+        ),
+    ],
+)
+def test_what_is_not_simulated_in_space_is_refused_with_what_to_leave_out(
+    settings, words, few
+):
+    """It spoke of second components and of bodies with a base and a face, which no key gives."""
+    request = asked(width="35 cm", height="120 cm", pga="0.6 g", **settings)
+    with pytest.raises(InputError, match=rf"^{words} .*; leave out one of them\.$"):
+        assess_with(request, few)

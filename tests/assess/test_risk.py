@@ -57,6 +57,7 @@ from rockfrag.assess.rules import rules_study
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.words.catalogue import catalogue
+from rockfrag.words.numbers import kept_together
 
 from .conftest import asked, outcomes_of
 
@@ -332,7 +333,8 @@ def test_every_source_says_where_its_size_comes_from(motions):
     assert list(parts.values()) == sorted(parts.values(), reverse=True)
     page = html.unescape(page_of(found))
     for name in found.main.sources:
-        assert catalogue().sentence(SOURCES[name].basis) in page
+        basis = catalogue().sentence(SOURCES[name].basis)
+        assert kept_together(basis) in page
     # the three largest are named
     for name in list(parts)[:3]:
         assert catalogue().say(SOURCES[name].called) in details_of(found)[4]

@@ -58,7 +58,7 @@ def test_play_writes_a_page_that_loads_nothing(record, tmp_path, capsys):
     )
     assert str(page) in capsys.readouterr().out
     text = page.read_text(encoding="utf-8")
-    assert "30 × 120 cm on 50 × 60 cm" in text
+    assert "30 × 120\u00a0cm on 50 × 60\u00a0cm" in text
     assert 'src="http' not in text
     assert main(["play", *case, "--output", "page.pdf"]) == 2
     assert "ends in .html" in capsys.readouterr().err

@@ -67,6 +67,7 @@ def check_report(
 ) -> Page:
     """Assert that a report is fit to be shown, whatever the user's names are, and return what is on it."""
     text = (results / "report.html").read_text(encoding="utf-8")
+    text = text.replace("\u00a0", " ")
     page = Page(text)
     said = [
         _without(word, names) for word in (*page.words, *page.drawings, *page.labels)

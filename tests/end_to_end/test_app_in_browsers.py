@@ -14,6 +14,7 @@ from rockfrag.assess.app.writing import write_app
 from rockfrag.assess.findings import details_of, lines_of
 from rockfrag.assess.request import make_request, read_request
 from rockfrag.cli.main import main
+from rockfrag.words.catalogue import catalogue
 
 from ..app_forms import options_of, settings_of, some_form_of_any_kind
 from ..case_tables import case_tables
@@ -295,4 +296,27 @@ def test_the_page_says_and_shows_what_moves_in_space(
     assert browser.run(FITS)
     put(browser, "#field-depth", "1 parsec")
     waited(browser, "document.querySelector('[aria-invalid=true]') !== null")
+    assert browser.console == []
+
+
+@QUICK_IN_ONE
+def test_a_change_of_language_keeps_what_is_chosen_and_says_all_of_it_anew(
+    browser, motions, tmp_path
+):
+    """The picture lost how it is turned, and what holds the object stayed in the first language."""
+    path = tmp_path / "assess.html"
+    write_app(motions, BOX, path, made=True)
+    opened(browser, path, 1280, 1000, ready=ANSWERED)
+    words = "document.getElementById('scene-words').textContent"
+    tried = "document.getElementById('tried').textContent.toLowerCase()"
+    waited(browser, f"{words} !== ''")
+    put(browser, "#slide-hold", "putty")
+    waited(browser, f"{tried}.includes('wax or putty')")
+    put(browser, "#language", "it", "change")
+    italian = catalogue("it")
+    waited(browser, f"{tried}.includes('cera o mastice')")
+    assert browser.run(words).endswith(italian.text("turn_view"))
+    label = "document.getElementById('scene').getAttribute('aria-label')"
+    assert browser.run(label) == browser.run(words)
+    assert browser.run("document.getElementById('slide-hold').value") == "putty"
     assert browser.console == []

@@ -235,7 +235,7 @@ def test_lines_and_page_of_a_site_speak_italian(site, capsys):
     assert "rock A dice di più" in said.out and last.startswith("Limiti")
     page = (site.parent / "out" / "Hill.html").read_text(encoding="utf-8")
     assert '<html lang="it"' in page and "Quale oggetto decide" in page
-    assert "oggetti che resistono al 25 % in più" in page
+    assert "oggetti che resistono al 25\u00a0% in più" in page
     # nothing of what the page says in English is left
     english = json.loads((TEXTS / "en.json").read_text(encoding="utf-8"))
     for id, text in english.items():

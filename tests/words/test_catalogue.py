@@ -20,6 +20,7 @@ from rockfrag.web import driver_text
 from rockfrag.words import catalogue as catalogues
 from rockfrag.words.catalogue import TEXTS, catalogue, formatter, languages
 from rockfrag.words.findings import Finding, Form, Number, as_data, finding, listed
+from rockfrag.words.numbers import kept_together
 
 SOURCE = Path(catalogues.__file__).parents[1]
 PLACES = re.compile(r"\{(\w+)\}")
@@ -91,6 +92,13 @@ def test_numbers_have_as_many_digits_as_they_deserve_and_no_exponent():
     assert catalogue("it").say(Number(0.25, Form.TWO)) == "0,25"
     assert said(float("nan"), Form.TWO) == "unknown"
     assert said(float("inf"), Form.PERCENT) == "unknown"
+
+
+def test_only_the_space_before_a_unit_keeps_a_line_together():
+    said = "PGA 0.3 g, 5 % of 20 motions, 3 m/s² over 12 storeys, 7 cm/s per g"
+    kept = said.replace("0.3 g", "0.3\u00a0g").replace("5 %", "5\u00a0%")
+    kept = kept.replace("3 m/s²", "3\u00a0m/s²").replace("7 cm/s", "7\u00a0cm/s")
+    assert kept_together(said) == kept
 
 
 def test_plural_forms_follow_the_number():

@@ -20,7 +20,7 @@ from rockfrag.aftermath.shaken_objects import (
     shaken_table,
 )
 from rockfrag.base.files import write_table, write_text
-from rockfrag.report.page import TEMPLATES, framed
+from rockfrag.report.page import TEMPLATES, framed, in_a_page
 from rockfrag.words.catalogue import FIRST, Catalogue, catalogue
 from rockfrag.words.findings import Finding, finding, percent, two
 
@@ -30,6 +30,7 @@ _TEMPLATES = Environment(
     undefined=StrictUndefined,
     trim_blocks=True,
     lstrip_blocks=True,
+    finalize=in_a_page,
 )
 
 
@@ -76,7 +77,7 @@ def after_lines(collection: ShakenCollection, language: str = FIRST) -> list[str
             fell=percent(each.fell),
             moved=percent(each.moved),
             look=finding(each.what_to_do),
-            where=each.request.place.where,
+            where=each.request.where,
         )
         lines.append(f"{rank:4d}  {each.request.name:<{longest}}  {texts.say(said)}")
     return lines
@@ -246,7 +247,7 @@ def _row(rank: int, each: ShakenObject, texts: Catalogue) -> list[str | Markup]:
     )
     return [
         Markup("<div>{} {}</div>").format(_BOX.format(name), rank),
-        _ROW_NAME.format(name, texts.say(each.request.place.where)),
+        _ROW_NAME.format(name, texts.say(each.request.where)),
         texts.say(percent(each.fell)),
         texts.say(percent(each.moved)),
         texts.text(each.what_to_do),

@@ -331,7 +331,7 @@ def shaken_table(collection: ShakenCollection) -> pd.DataFrame:
         row: dict[str, Any] = {
             "rank": rank,
             "name": each.request.name,
-            "place": texts.say(each.request.place.where),
+            "place": texts.say(each.request.where),
             "latitude": latitude,
             "longitude": longitude,
             "pga_g": each.ground.pga,

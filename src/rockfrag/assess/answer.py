@@ -530,8 +530,12 @@ def shake_all(
 
     Returns
     -------
-    What became of each object: in its arrangements, with its changes, on its pad and in one plane.
+    What became of each object: in its arrangements, with its changes, on its pad and in one plane. What holds
+    an object and is not simulated in space, where it moves so, is an InputError.
     """
+    if plan.shaking.motions.both:
+        for request in requests:
+            request.objects.check_in_space()
     meter = None
     if progress is not None:
         meter = Meter(seconds_of(requests, plan), progress)

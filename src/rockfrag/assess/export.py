@@ -47,7 +47,7 @@ def as_json(found: Assessment) -> str:
     answer = {
         "rockfrag": __version__,
         "name": request.name,
-        "place": texts.say(request.place.where),
+        "place": texts.say(request.where),
         "floor": texts.say(request.place.floor_name or ""),
         "lines": lines_of(found),
         "details": details_of(found),
@@ -200,7 +200,7 @@ def as_nrml(found: Assessment) -> str:
     }
     kind = found.request.objects.measured_as
     error = MODEL_ERRORS[kind]
-    about = {"where": found.request.place.where, "motions": found.motions.about_set}
+    about = {"where": found.request.where, "motions": found.motions.about_set}
     said = [
         finding(
             Text.IN_NRML,

@@ -144,7 +144,7 @@ def few_earthquakes(found: Assessment) -> bool:
 
 
 def _who(found: Assessment) -> dict[str, Value]:
-    return {"name": found.request.called, "where": found.request.place.where}
+    return {"name": found.request.called, "where": found.request.where}
 
 
 def _amount(found: Assessment, value: float) -> Finding:
@@ -418,7 +418,7 @@ def _reduction(change: Mitigation) -> dict[str, Value]:
     choices.tell_reduction(change.factor, change.lower, change.upper, found)
     value, lower, upper = found.tolist()
     limits = {"lower": whole(100 * lower), "upper": whole(100 * upper)}
-    return {"value": _whole_percent(value), **limits}
+    return {"value": percent(value), **limits}
 
 
 def _whole_percent(part: float) -> Finding:
@@ -437,11 +437,9 @@ def mitigation_cell(found: Assessment, change: Mitigation) -> Finding:
     """What any change does, for a cell of a table."""
     factor = change.factor
     text = _text(choices.change_alone, factor, _grows(found), change.shown)
-    about: dict[str, Value] = {"value": _whole_percent(abs(1 - factor))}
+    about: dict[str, Value] = {"value": percent(abs(1 - factor))}
     if text in (Text.CELL_UNKNOWN, Text.CELL_NONE_LEFT):
         about = {}
-    elif text == Text.CELL_INCREASES:
-        about = {"times": two(factor)}
     elif change.shown:
         about = _reduction(change)
     return finding(text, **about)

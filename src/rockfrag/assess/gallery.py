@@ -166,7 +166,7 @@ class _Layout:
             best, request = best_change(found), found.request
             row = {
                 "name": request.name,
-                "place": texts.say(request.place.where),
+                "place": texts.say(request.where),
                 "probability": texts.say(estimate_of(found.main)),
                 "contribution": 100 * float(parts[request.name]),
                 "change": texts.sentence(mitigation(found, best)) if best else "–",

@@ -562,7 +562,7 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
     for found in inventory.found:
         row: dict[str, Any] = {
             "name": found.request.name,
-            "place": catalogue().say(found.request.place.where),
+            "place": catalogue().say(found.request.where),
         }
         for name, estimate in (
             ("probability", found.probability),
@@ -657,7 +657,7 @@ def inventory_lines(inventory: Inventory, language: str = FIRST) -> list[str]:
     for i, (found, said) in enumerate(
         zip(inventory.found, fares, strict=True), start=1
     ):
-        name, place = found.request.name, texts.say(found.request.place.where)
+        name, place = found.request.name, texts.say(found.request.where)
         half = texts.say(_half(found))
         lines.append(f"{i:4d}  {name:<{longest}}  {said:<{widest}}  {half}, {place}")
     return lines

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 from markupsafe import Markup
@@ -34,6 +35,7 @@ from rockfrag.assess.findings import (
     value_of,
 )
 from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.standing import Standing
@@ -118,7 +120,7 @@ class _Layout:
         lead = finding(
             Text.PAGE_LEAD,
             name=found.request.called,
-            where=found.request.place.where,
+            where=found.request.where,
             motions=found.motions.about_set,
         )
         return Page(
@@ -190,7 +192,7 @@ class _Layout:
         """What changes do to the answer, and what each costs."""
         found = self.found
         rows: list[tuple[Value, ...]] = [
-            (each.change, value_of(found, each.value), mitigation_cell(found, each))
+            (each.change, _with_it(found, each), mitigation_cell(found, each))
             for each in found.mitigations
         ]
         titles = [Text.COLUMN_CHANGE, Text.COLUMN_WITH_IT, Text.COLUMN_DOES]
@@ -286,7 +288,10 @@ class _Layout:
         found = self.found
         rows = []
         for effect in found.effects:
-            spread = finding(Text.CELL_SD, value=said.two(100 * effect.spread))
+            # a direction is moved by an angle
+            spread: Value = "–"
+            if effect.spread > 0:
+                spread = finding(Text.CELL_SD, value=said.two(100 * effect.spread))
             sides = [value_of(found, side) for side in effect.sides]
             rows.append((SOURCES[effect.name].called, spread, *sides))
         titles = [
@@ -468,6 +473,14 @@ def _years(period: float) -> str:
     return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
 
 
+def _with_it(found: Assessment, change: Mitigation) -> Value:
+    """The answer with a change: what is compared by other motions, or in one plane, takes the same part off it."""
+    if math.isnan(change.factor):
+        return value_of(found, change.value)
+    value = found.main.value * change.factor
+    return value_of(found, value if found.target.is_level else min(value, 1.0))
+
+
 def _cost(cost: float) -> Value:
     """What a change costs, as the user stated it."""
     return said.three(cost) if math.isfinite(cost) else "–"
@@ -548,6 +561,8 @@ def _named(motions: MotionSet, motion: Motion, i: int) -> Motion:
     )
     return replace(motion, name=known)
 
+
+NAME_WIDTH = 28  # Letters of a line beside bars
 
 _REACHED = 0.995  # Fraction of motions up to which the curves are shown
 
@@ -631,8 +646,14 @@ def sources_figure(found: Assessment, texts: Catalogue) -> Figure:
     """How much each source of uncertainty adds to the interval."""
     ranked = sorted(found.main.sources.items(), key=lambda item: item[1])
     finite = {name: value for name, value in ranked if np.isfinite(value)}
-    known = {texts.say(SOURCES[name].called): finite[name] for name in finite}
-    with panels(COLUMN_WIDTH, 0.6 + 0.24 * len(known)) as (figure, axes):
+    # names on several lines leave room for the bars
+    known = {
+        fill(texts.say(SOURCES[name].called), NAME_WIDTH): finite[name]
+        for name in finite
+    }
+    lines = sum(name.count("\n") + 1 for name in known)
+    with panels(COLUMN_WIDTH, 0.8 + 0.12 * len(known) + 0.13 * lines) as (figure, axes):
         axes.barh(list(known), list(known.values()), color=BLUE, height=0.6)
-        axes.set(xlabel=texts.text(Text.AXIS_SOURCES))
+        axes.set(xlabel=fill(texts.text(Text.AXIS_SOURCES), NAME_WIDTH))
+        axes.locator_params(axis="x", nbins=4)
     return figure

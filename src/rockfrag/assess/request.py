@@ -31,7 +31,7 @@ from rockfrag.base.yaml_file import read_yaml
 from rockfrag.config.schema import checked
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.system.kinds import kind_named
-from rockfrag.words.findings import Finding, Value, finding, three
+from rockfrag.words.findings import Finding, Value, finding, listed, three
 
 LONGEST_PERIOD = 1e6  # Longest return period of a level [year]
 # Time for which the probability is given unless another is asked for [year]
@@ -131,6 +131,15 @@ class Request:
     def called(self) -> str | Finding:
         """What the object is called, in words where it has no name."""
         return finding("the_object") if self.name == UNNAMED else self.name
+
+    @property
+    def where(self) -> Finding:
+        """Where it stands, and with what holds it there: ``on the ground with wax or putty``."""
+        holders = [holder.short for holder in self.objects.under.holders]
+        where = self.place.where
+        if not holders:
+            return where
+        return finding(Text.WHERE_HELD, where=where, holders=listed(holders))
 
 
 def read_request(path: str | os.PathLike[str] | Mapping[str, Any]) -> Request:

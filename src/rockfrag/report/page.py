@@ -36,12 +36,20 @@ from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.runtime.processes import in_processes
 from rockfrag.words.catalogue import FIRST, catalogue
 from rockfrag.words.findings import finding
+from rockfrag.words.numbers import kept_together
 from rockfrag.words.sentences import estimates, number, probability, sentence
+
+
+def in_a_page(value: Any) -> Any:
+    """A value as a page prints it: numbers stay on a line with their units; HTML stays as it is."""
+    return kept_together(value) if type(value) is str else value
+
 
 TEMPLATES = Environment(
     loader=PackageLoader("rockfrag.report"),
     autoescape=select_autoescape(default=True),
     undefined=StrictUndefined,
+    finalize=in_a_page,
 )
 """Scripts, styles and elements of pages."""
 

@@ -1,4 +1,28 @@
-"""Numbers in words: as many digits as they deserve, and never an exponent."""
+"""Numbers in words: as many digits as they deserve, never an exponent, and on one line with their units."""
+
+import re
+
+UNITS = (
+    *("%", "m", "cm", "mm", "km", "s", "g", "kg", "kg/m³", "N", "kN", "kPa", "MPa"),
+    *("N/m", "kN/m", "m/s", "cm/s", "m/s²", "Hz", "rad", "bit"),
+)
+"""Units that stay on a line with the number before them."""
+
+_BEFORE_UNIT = re.compile(rf"(?<=\d) (?=(?:{'|'.join(UNITS)})(?![\w/]))")
+
+
+def kept_together(text: str) -> str:
+    """Return a text whose lines break nowhere between a number and its unit.
+
+    Parameters
+    ----------
+    text : in which a space stands between them
+
+    Returns
+    -------
+    The text with a space there that does not break.
+    """
+    return _BEFORE_UNIT.sub("\u00a0", text)
 
 
 def significant(value: float, digits: int) -> str:

@@ -54,6 +54,7 @@ from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.system.mounts import ROLLING
 from rockfrag.web import driver_text
 from rockfrag.words.findings import as_data
+from rockfrag.words.numbers import UNITS
 
 SCRIPTS = (
     "core",
@@ -131,6 +132,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
         "units": {
             "dimensions": units.DIMENSIONS,
             "examples": units.EXAMPLES,
+            "said": UNITS,
             "known": {
                 name: ", ".join(known) for name, known in units.DIMENSIONS.items()
             },
@@ -268,7 +270,7 @@ def _constants() -> dict[str, Any]:
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
-        **_of(findings, "MOST_SOURCES", "MOST_ASSUMPTIONS", "MOST_CHANGES"),
+        **_of(findings, "MOST_SOURCES", "MOST_CHANGES"),
         **_of(choices, "FEWEST_EARTHQUAKES"),
         **_of(request, "ACCEPTED_AT_A_LEVEL", "ACCEPTED_IN_FIFTY_YEARS"),
         "VARIANTS": {

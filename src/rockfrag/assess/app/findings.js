@@ -5,8 +5,7 @@ const findings = (data, core, judge) => {
   "use strict";
   const { choose } = core;
   const { partsOf, ordered } = judge;
-  const { MOST_SOURCES, MOST_ASSUMPTIONS, MOST_CHANGES, FEWEST_EARTHQUAKES } =
-    data.constants;
+  const { MOST_SOURCES, MOST_CHANGES, FEWEST_EARTHQUAKES } = data.constants;
   const finding = (id, values = {}) => ({ id, values });
   const number = (form) => (value) => ({ number: value, form });
   const [percent, limit, two, three, four, whole] = [
@@ -41,7 +40,7 @@ const findings = (data, core, judge) => {
       return [...found.values];
     });
     return {
-      value: wholePercent(value),
+      value: percent(value),
       lower: whole(100 * least),
       upper: whole(100 * most),
     };
@@ -301,10 +300,8 @@ const findings = (data, core, judge) => {
         ([, , keys]) => -widening(keys),
         () => 0,
       ).map(([id, values]) => finding(`assumed_${id}`, values));
-      const rest = order.length - MOST_ASSUMPTIONS;
-      const short = order.slice(0, MOST_ASSUMPTIONS);
-      said.push(finding("assumed", { assumptions: listed(short) }));
-      return rest > 0 ? [...said, finding("more_assumed", { n: rest })] : said;
+      // all of them, as they stand nowhere else
+      return [...said, finding("assumed", { assumptions: listed(order) })];
     }
     // how much sources widen the interval together
     const widening = (keys) =>
@@ -358,9 +355,8 @@ const findings = (data, core, judge) => {
       {
         cell_unknown: () => ({}),
         cell_none_left: () => ({}),
-        cell_increases: () => ({ times: two(factor) }),
         cell_reduces: () => reduction({ factor, lower, upper }),
-      }[id] ?? (() => ({ value: wholePercent(Math.abs(1 - factor)) }));
+      }[id] ?? (() => ({ value: percent(Math.abs(1 - factor)) }));
     return finding(id, about());
   }
   return { of, ofTrial };

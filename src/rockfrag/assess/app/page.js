@@ -9,8 +9,8 @@
     return element;
   };
   // a text whose numbers stay on a line with their units, and options with what they say
-  const TOGETHER =
-    /(\d (?:%|g|s|m|cm|mm|kg|N|N\/m|cm\/s|m\/s)(?![\p{L}\d])|--\S+ \S+)/u;
+  const UNITS = data.units.said.join("|");
+  const TOGETHER = new RegExp(`(\\d (?:${UNITS})(?![\\p{L}\\d/])|--\\S+ \\S+)`, "u");
   const bound = (text) =>
     text
       .split(TOGETHER)
@@ -471,6 +471,12 @@
     "locked",
   ];
   function drawSliders() {
+    const chosen = Object.fromEntries(
+      ["fixed", "there", "hold", "bears"].map((id) => [
+        id,
+        find(`slide-${id}`)?.value,
+      ]),
+    );
     find("sliders").replaceChildren(
       ...Object.entries(SLIDERS).map(([id, [low, high, at]]) => {
         const input = make("input", {
@@ -503,12 +509,15 @@
       if (at === "casters") return say("there_casters");
       return at ? say("there_wall", { distance: at }) : say("there_free");
     };
+    const heldBy = (kind) => say(kind ? `held_by_${kind}` : "held_by_nothing");
     find("sliders").append(
       choiceOf("fixed", ["not_fixed", "to_pedestal", "to_floor"], say),
       choiceOf("there", THERE, whereOf),
-      choiceOf("hold", HOLDS, (kind) => say(`slide_held_${kind || "nothing"}`)),
+      choiceOf("hold", HOLDS, heldBy),
       bearsField(),
     );
+    for (const [id, value] of Object.entries(chosen))
+      if (value) find(`slide-${id}`).value = value;
   }
   function choiceOf(id, values, textOf) {
     const options = values.map((value) =>
@@ -567,7 +576,7 @@
     };
   }
   function slide() {
-    if (!shown || shown.run !== current) return;
+    if (shown?.run !== current || document.body.dataset.stage !== "complete") return;
     const [width, cg, ballast] = Object.values(SLIDERS).map(([, , at]) => at / 100);
     const { found } = shown;
     const choice = find("slide-fixed");
@@ -665,10 +674,17 @@
   }
   // of what moves in space and was tried in a plane, how it is had in space, if at all
   const OPTIONS = { bracket: "--bracket", cord: "--cord" };
-  function inPlaneAlone({ solid, hold: { kind } }, inSpace, asked) {
+  const standing = (there) => {
+    if (!there) return [];
+    return there.kind === "wall"
+      ? [`--wall ${100 * there.value}cm`]
+      : ["--casters free"];
+  };
+  function inPlaneAlone({ solid, hold: { there, kind } }, inSpace, asked) {
     if (!solid || inSpace) return [];
     if (!OPTIONS[kind]) return [say("tried_in_plane_alone")];
-    return [say("tried_in_plane", { option: `${OPTIONS[kind]} ${asked.bears}N` })];
+    const option = [...standing(there), `${OPTIONS[kind]} ${asked.bears}N`].join(" ");
+    return [say("tried_in_plane", { option })];
   }
   function compare({ fraction, probability }, after, stands = say("before")) {
     computed("helping");
@@ -770,10 +786,11 @@
         level: level(),
         what: say(fallen ? "falls" : "stays"),
       });
-    const turned = history ? ` ${say("turn_view")}` : "";
+    scene.turns = Boolean(history);
     scene.title = () => say(deciding.falls ? "scene" : "scene_other");
     find("bump").hidden = Boolean(scene.pedestal);
-    titled(turned);
+    computed("drawing");
+    sayScene();
   }
   // a base that is hit, runs a distance and is stopped: no record of accelerations
   // holds that
@@ -788,7 +805,7 @@
       velocity,
       distance: millimetres / 1000,
     });
-    Object.assign(scene, { response, dt: response.dt, at: 0 });
+    Object.assign(scene, { response, dt: response.dt, at: 0, turns: false });
     scene.words = () =>
       say("bump_words", {
         velocity: local(velocity, 3),
@@ -796,7 +813,7 @@
         what: say(response.fallen ? "falls" : "stays"),
       });
     scene.title = () => say("bump_title");
-    titled();
+    sayScene();
     if (scene.timer) play();
     play();
   }
@@ -804,11 +821,12 @@
     find(place).hidden = false;
     find(place).classList.remove("stale");
   }
-  function titled(turned = "") {
-    computed("drawing");
-    find("scene-words").replaceChildren(...bound(scene.words() + turned));
+  // what the picture shows, and how it is turned where it can be
+  function sayScene() {
+    const words = scene.words() + (scene.turns ? ` ${say("turn_view")}` : "");
+    find("scene-words").replaceChildren(...bound(words));
     find("scene-title").textContent = scene.title();
-    find("scene").setAttribute("aria-label", scene.words() + turned);
+    find("scene").setAttribute("aria-label", words);
   }
   const unpacked = (text) => rockfragUnpacked(rockfragBytes(text));
   function paint(what = scene, canvas = find("scene")) {
@@ -1183,8 +1201,9 @@
     if (document.body.dataset.stage === "refused") update();
     if (!shown) return;
     show(shown);
-    if (scene.words) find("scene-words").replaceChildren(...bound(scene.words()));
-    if (scene.title) find("scene-title").textContent = scene.title();
+    if (scene.words) sayScene();
+    if (scene.timer) find("play").textContent = say("pause");
+    slide();
   }
   begin();
 })();

@@ -45,6 +45,7 @@ class Box(Standing):
     faces_anywhere: bool = False
 
     idle_in_plane = frozenset({"facing"})
+    in_space_by = "its depth"
 
     @classmethod
     def takes(cls, settings: Mapping[str, Any]) -> bool:

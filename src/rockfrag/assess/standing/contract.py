@@ -80,6 +80,8 @@ class Standing(ABC):
     option: ClassVar[str] = ""
     # Kind of body whose model error counts; of kinds without a campaign that of a cut block
     measured_as: ClassVar[str] = CUT
+    # What of it makes it move in space; empty where it rocks in one plane
+    in_space_by: ClassVar[str] = ""
     # Text of how it moves in space
     in_space_text: ClassVar[Text] = Text.MOVES_IN_SPACE
     # Whether it is answered in the worst direction of each record where it rocks in a plane
@@ -228,6 +230,18 @@ class Standing(ABC):
     def is_whole(self, top: Block) -> bool:
         """Whether a block is the object with what it is fixed to."""
         return bodies.is_whole(row_of(top), row_of(self.block))
+
+    def check_in_space(self) -> None:
+        """Refuse what holds it and is simulated in one plane only, where it moves in space."""
+        solid = self.solid(self.body)
+        if solid is None:
+            return
+        for holder in self.under.holders:
+            if not holder.holds_in_space(solid):
+                raise InputError(
+                    f"key {holder.key}: it is simulated in one plane, and {self.in_space_by} makes the object "
+                    "move in space; leave out one of them."
+                )
 
     def check(self) -> None:
         """Refuse a restitution with which an impact would gain energy."""

@@ -74,6 +74,15 @@ class Holder(ABC):
         """What it is called, with what it bears."""
 
     @property
+    @abstractmethod
+    def short(self) -> Finding:
+        """Its name, without what it bears."""
+
+    def holds_in_space(self, solid: System) -> bool:
+        """Whether it is simulated of an object in space."""
+        return True
+
+    @property
     def bears(self) -> float:
         """Demand at which it fails [N], or at which it meets its stop [m]; infinite where neither is asked."""
         return math.inf
@@ -94,6 +103,7 @@ class Putty(Holder):
 
     tension: float = UNBROKEN
     key: ClassVar[str] = "putty"
+    short = finding(Text.HELD_BY_PUTTY)
     demand: ClassVar[str] = "largest_force"
     times: ClassVar[float] = 2.0  # of each of two sides
 
@@ -154,6 +164,7 @@ class Bracket(Fastener):
     """A bracket between the object and a wall that stands like the ground: it holds both ways."""
 
     key: ClassVar[str] = "bracket"
+    short = finding(Text.HELD_BY_BRACKET)
 
     def on(self, system: System) -> System:
         """Fasten the uppermost body in the direction of its narrower side."""
@@ -171,6 +182,7 @@ class Cords(Fastener):
     """Cords to both sides of the object."""
 
     key: ClassVar[str] = "cord"
+    short = finding(Text.HELD_BY_CORD)
 
     def on(self, system: System) -> System:
         """Fasten the uppermost body to both sides in the direction of its narrower side."""
@@ -194,6 +206,10 @@ class Isolator(Holder):
     key: ClassVar[str] = "isolator"
     demand: ClassVar[str] = "stroke"
     slow: ClassVar[bool] = True
+
+    def holds_in_space(self, solid: System) -> bool:
+        """In one plane only."""
+        return False
 
     def on(self, system: System) -> System:
         """Put a plate under the lowest body."""
@@ -225,6 +241,7 @@ class Pendulum(Isolator):
 
     radius: float = RADIUS
     friction: float = SLIDES_AT
+    short = finding(Text.HELD_BY_ISOLATOR)
 
     def _support(self, plate: float, carried: float) -> Support:
         """Return the dish, in which friction and fall go with the weight."""
@@ -257,6 +274,7 @@ class Springs(Isolator):
     stiffness: float | None = None
     strength: float | None = None
     yields_at: float = YIELDS_AT
+    short = finding(Text.HELD_BY_SPRINGS)
 
     def _support(self, plate: float, carried: float) -> Support:
         """Return the springs."""
@@ -295,6 +313,17 @@ class Beside(Holder):
     height: float = math.inf
     key: ClassVar[str] = "wall"
 
+    @property
+    def short(self) -> Finding:
+        """A wall, with its height if that was given."""
+        if self.height < math.inf:
+            return finding(Text.HELD_BY_LOW_WALL, height=two(100 * self.height))
+        return finding(Text.HELD_BY_WALL)
+
+    def holds_in_space(self, solid: System) -> bool:
+        """As a wall of any height, beside what has corners."""
+        return self.height == math.inf and not isinstance(solid.bodies[0].base, Circle)
+
     def on(self, system: System) -> System:
         """Set a wall beside the lowest body, in the direction of its narrower side."""
         base = system.bodies[0].base
@@ -324,6 +353,11 @@ class Casters(Holder):
     locked: bool = False
     key: ClassVar[str] = "casters"
 
+    @property
+    def short(self) -> Finding:
+        """Casters that are locked, or roll."""
+        return finding(Text.HELD_BY_LOCKED if self.locked else Text.HELD_BY_ROLLING)
+
     def on(self, system: System) -> System:
         """Let the ground's contact roll, or slide on what is locked."""
         locked = Friction(LOCKED_AT, LOCKED_AT)
@@ -341,6 +375,7 @@ class WithoutWall(Holder):
     """The object moved away from the wall that it stands at."""
 
     key: ClassVar[str] = "wall"
+    short = finding(Text.HELD_BY_OFF_WALL)
 
     def on(self, system: System) -> System:
         """Take all walls away."""

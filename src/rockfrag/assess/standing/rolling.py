@@ -32,6 +32,7 @@ class Round(Standing):
 
     in_space_text: ClassVar[Text] = Text.ROLLS_IN_SPACE
     from_all_sides: ClassVar[bool] = True
+    in_space_by: ClassVar[str] = "its round base"
 
     @classmethod
     def takes(cls, settings: Mapping[str, Any]) -> bool:

@@ -49,6 +49,7 @@ class Scanned(Standing):
     faces_anywhere: bool = False
 
     measured_as: ClassVar[str] = SCAN
+    in_space_by: ClassVar[str] = "its mesh"
 
     @classmethod
     def takes(cls, settings: Mapping[str, Any]) -> bool:

@@ -34,11 +34,13 @@ function rockfragSized(canvas) {
   context.font = "12px system-ui, sans-serif";
   return [context, width, height];
 }
-// what says texts with values in their places
+// what says texts with values in their places; numbers stay on a line with their units
 function rockfragSayer(texts) {
   "use strict";
   return (id, values = {}) =>
-    texts[id].replace(/\{(\w+)\}/g, (_, place) => values[place]);
+    texts[id]
+      .replace(/\{(\w+)\}/g, (_, place) => values[place])
+      .replace(/(\d) (?=(?:g|s|m|cm)(?![\w/]))/g, "$1\u00a0");
 }
 // what writes a number with so many decimals, by a language's sign for them
 function rockfragDecimals(decimal) {
