@@ -8,6 +8,8 @@ import math
 
 from rockfrag.engines.compile.jit import kernel
 
+TINY = 1e-300  # what a length is at least where it divides: its direction is then none, or any
+
 
 @kernel
 def dot(a, b):

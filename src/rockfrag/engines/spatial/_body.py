@@ -29,6 +29,8 @@ SIZE = 15
 # where a state has the centre of mass, the attitude (a quaternion), its velocity, the angular velocity in the
 # body, the work of the ground's motion and what friction has taken
 PLACE, ATTITUDE, VELOCITY, SPIN, WORK, FRICTION = 0, 3, 7, 10, 13, 14
+# and the height of the centre of mass over the ground, and its velocity upwards
+HEIGHT, UPWARD = PLACE + 2, VELOCITY + 2
 MOST_VERTICES = 64
 MOST_CONSTRAINTS = 8  # walls and ties
 BOND = MOST_CONSTRAINTS  # row of a bond among what holds a body

@@ -36,6 +36,8 @@ FLIGHT, PIVOT, HINGE, GENERAL, REST, SLIDER = 0, 1, 2, 3, 4, 5
 SLIP_FLOOR = 1e-4
 # part of the largest compliance that is added to all, so that redundant forces are the least ones [-]
 SOFTNESS = 1e-9
+# place of the gravity on ground at rest [m/s²] in s.field, behind the effective one and its rate
+GRAVITY = 6
 STAGES = 7
 # of the series of an angle in a step
 HINGE_ORDER = 7
@@ -649,7 +651,7 @@ def rates(body, tau, y, dy, s, split=True):
                 acceleration = plus(acceleration, push)
                 alpha = plus(alpha, turned_by(body, rows, s.closed[i], push, twist))
     fill_rates(y, omega, alpha, acceleration, dy)
-    dy[13] = load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[6]) * y[9]
+    dy[13] = load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[GRAVITY]) * y[9]
     dy[13] += dot(twist_by_ties(s), omega)
     dy[14] = lost
 

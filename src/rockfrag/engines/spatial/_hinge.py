@@ -54,7 +54,7 @@ def attempt(body, tau, h, y, s):
     )
     angle, speed, work = sums(s)
     write_state(body, y, e, p, (angle, speed / h), s)
-    lifted = s.field[6] * (s.new[2] - y[2])
+    lifted = s.field[forces.GRAVITY] * (s.new[2] - y[2])
     s.new[solid.WORK] = y[solid.WORK] + inertia * work / (h * h) + lifted
     end_forces(body, tau + h, s)
     return abs(s.angle[ORDER]) * ORDER / h

@@ -113,7 +113,7 @@ def leave_rest(body, y, tau, s):
     gravity = forces.effective_gravity_at(s.field, tau)
     if body.walls:
         gravity = modes.borne_by_ground(body, y, rows, gravity)
-    small = 1e-9 * s.field[6]
+    small = 1e-9 * s.field[forces.GRAVITY]
     level = algebra.norm(gravity[0], gravity[1])
     s.rests = 0
     whole = modes.rest_margin(body, y, rows, gravity, s)
@@ -175,7 +175,7 @@ def start_rolling(body, y, x, z, gravity, s):
     u = (x / size, z / size)
     a, b, c = y[0], y[1], y[2]
     tilt_about(body, y, u, RIM_START)
-    lifted = (gravity[2] + s.field[6]) * (y[2] - c)
+    lifted = (gravity[2] + s.field[forces.GRAVITY]) * (y[2] - c)
     y[solid.WORK] += gravity[0] * (y[0] - a) + gravity[1] * (y[1] - b) + lifted
     s.closed[0], s.slides[0] = solid.rim_contact(body), forces.STICKS
     s.count, s.rests = 1, 0
@@ -207,7 +207,7 @@ def pass_flat(body, y, s):
     sinking = algebra.cross(up, solid.omega_of(y))
     if sinking[0] * up[0] + sinking[1] * up[1] >= 0.0:
         return
-    before = solid.energy(body, y, s.field[6])
+    before = solid.energy(body, y, s.field[forces.GRAVITY])
     angle = body.slide_turn if s.slides[0] == forces.SLIDES else body.pass_turn
     # the way in which the contact goes round already
     if sinking[0] * from_here[1] - sinking[1] * from_here[0] < 0:
@@ -220,7 +220,12 @@ def pass_flat(body, y, s):
     tilt_about(body, y, to_there, max(2 * FLAT_PASS, sine))
     rise(body, y, to_there, algebra.norm(sinking[0], sinking[1]), s)
     # a base that is not symmetrical would gain in the new direction
-    solid.pay(body, y, solid.energy(body, y, s.field[6]) - before, s.field[6])
+    solid.pay(
+        body,
+        y,
+        solid.energy(body, y, s.field[forces.GRAVITY]) - before,
+        s.field[forces.GRAVITY],
+    )
 
 
 @kernel
@@ -347,13 +352,18 @@ def tip_over_rim(body, y, x, z, sliding, gravity, s):
     """Tilt a flat body towards a direction of the base, with the velocities that it has if it slides."""
     omega = solid.omega_of(y)
     velocity = (y[7], y[8], y[9])
-    before = solid.balance(body, y, s.field[6])
+    before = solid.balance(body, y, s.field[forces.GRAVITY])
     start_rolling(body, y, x, z, gravity, s)
     if sliding == forces.SLIDES:
         s.slides[0] = forces.SLIDES
         y[10], y[11], y[12] = omega
         y[7], y[8], y[9] = velocity
-    solid.pay(body, y, solid.balance(body, y, s.field[6]) - before, s.field[6])
+    solid.pay(
+        body,
+        y,
+        solid.balance(body, y, s.field[forces.GRAVITY]) - before,
+        s.field[forces.GRAVITY],
+    )
 
 
 @kernel
@@ -375,7 +385,7 @@ def rattle_ends(body, left, s):
     """
     if body.rim > 0.0 or left > RATTLE * body.barrier:
         return False
-    weight = s.field[6] - s.soon[1]
+    weight = s.field[forces.GRAVITY] - s.soon[1]
     rights = weight * body.nearest - s.soon[0] * body.height
     if rights <= 0.0 or s.soon[0] >= body.static * weight:
         return False
@@ -402,7 +412,7 @@ def happen(body, what, tau, y, cut, stuck, s):
     ``tau`` is the time in the interval [s], ``cut`` the energy at which a body rests over what a fall takes, and
     ``stuck`` how many steps in a row had hardly any length.
     """
-    g = s.field[6]
+    g = s.field[forces.GRAVITY]
     gravity = forces.effective_gravity_at(s.field, tau)
     before = solid.balance(body, y, g)
     if what == modes.LANDS:
@@ -564,12 +574,12 @@ def small_rim(body, y, tau, cut, s):
     small = LEAST_WOBBLE * cut * body.barrier
     # of the motion that tilts the body, what it would lose by lying down [J/kg]
     tilting = 0.5 * (body.inertia[0, 0] * y[10] ** 2 + body.inertia[1, 1] * y[11] ** 2)
-    lift = s.field[6] * body.rim * algebra.norm(rows[2][0], rows[2][1])
+    lift = s.field[forces.GRAVITY] * body.rim * algebra.norm(rows[2][0], rows[2][1])
     if tilting + 0.5 * y[9] ** 2 + lift >= small:
         return
     if (
         modes.rest_margin(body, y, rows, gravity, s) >= 0
-        and solid.energy(body, y, s.field[6]) < small
+        and solid.energy(body, y, s.field[forces.GRAVITY]) < small
     ):
         modes.come_to_rest(body, y, s)
     elif s.slides[0] == forces.SLIDES and body.kinetic * body.height < body.rim:
@@ -589,7 +599,7 @@ def slow_power(x):
 @kernel
 def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     """Take one step of an interval, up to its end or to what happens first; return the time and the next step."""
-    g = s.field[6]
+    g = s.field[forces.GRAVITY]
     step.begin(body, tau, y, s)
     h = min(next_step, dt - tau)
     while True:
@@ -650,14 +660,14 @@ def note_loss(loss, out):
 def look_after_rim(body, y, tau, cut, ahead, s, out):
     """Pass a rolling rim through flat, or let it rest."""
     up = algebra.rotation(y)[2]
-    before = solid.energy(body, y, s.field[6])
+    before = solid.energy(body, y, s.field[forces.GRAVITY])
     passes = s.count == 1 and algebra.norm(up[0], up[1]) < FLAT_PASS
     if passes:
         s.goes_on = 0
         pass_flat(body, y, s)
     else:
         small_rim(body, y, tau, cut, s)
-    note_loss(before - solid.energy(body, y, s.field[6]), out)
+    note_loss(before - solid.energy(body, y, s.field[forces.GRAVITY]), out)
     return 1e-9 if passes else ahead
 
 
@@ -960,7 +970,7 @@ def turn_ties(body, y, tau, breaks, s):
 @kernel
 def give_up(body, tau, y, s):
     """End a wobble that cannot be followed any more; return the energy lost."""
-    before = solid.energy(body, y, s.field[6])
+    before = solid.energy(body, y, s.field[forces.GRAVITY])
     s.counters[modes.UNSOLVED] += 1
     up = algebra.rotation(y)[2]
     if body.rim > 0 and algebra.norm(up[0], up[1]) < 1e-3:
@@ -968,7 +978,7 @@ def give_up(body, tau, y, s):
         modes.lay_flat(body, y)
     if not modes.choose_mode(body, tau, y, s):
         modes.jam(body, y, s)
-    return before - solid.energy(body, y, s.field[6])
+    return before - solid.energy(body, y, s.field[forces.GRAVITY])
 
 
 @kernel

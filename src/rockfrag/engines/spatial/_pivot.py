@@ -27,6 +27,7 @@ from rockfrag.engines.spatial._algebra import (
     to_world,
 )
 from rockfrag.engines.spatial._forces import (
+    GRAVITY,
     STAGES,
     TURNING,
     effective_gravity_at,
@@ -66,7 +67,7 @@ def turning_rates(body, tau, turned, slope, s):
     slope[3] = 0.5 * (w * omega[2] + x * omega[1] - i * omega[0])
     slope[4], slope[5], slope[6] = alpha
     slope[7], slope[8] = dot(rows[0], velocity), dot(rows[1], velocity)
-    slope[WORK] = dot(plus(weight, scaled(s.field[6], rows[2])), velocity)
+    slope[WORK] = dot(plus(weight, scaled(s.field[GRAVITY], rows[2])), velocity)
     return rows, force, velocity
 
 

@@ -195,7 +195,7 @@ def margin(body, y, s):
             value = max(value + modes.TOUCH, 0.5 * modes.TOUCH)
         if value < least:
             least, what = value, modes.LANDS
-    small = LEAST_FORCE * s.field[6]
+    small = LEAST_FORCE * s.field[forces.GRAVITY]
     # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
     passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
     on_face = slides_flat(s)

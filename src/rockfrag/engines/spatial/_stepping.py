@@ -31,10 +31,10 @@ def pass_interval(body, tau, dt, y, s):
     s.jammed = 0
     lost, n = 0.0, 0
     for part in range(parts):
-        before = solid.balance(body, y, s.field[6])
+        before = solid.balance(body, y, s.field[forces.GRAVITY])
         n = take_step(body, tau + part * h, h, y, s)
         lost += loss_since(body, before, y, s)
-    before = solid.balance(body, y, s.field[6])
+    before = solid.balance(body, y, s.field[forces.GRAVITY])
     close_pressed(body, y, n, s)
     if not modes.choose_mode(body, dt, y, s):
         modes.jam(body, y, s)
@@ -44,9 +44,9 @@ def pass_interval(body, tau, dt, y, s):
 @kernel
 def loss_since(body, before, y, s):
     """Take from the velocities what energy was gained since a balance; return what was lost [J/kg]."""
-    gained = solid.balance(body, y, s.field[6]) - before
-    solid.pay(body, y, gained, s.field[6])
-    return before - solid.balance(body, y, s.field[6])
+    gained = solid.balance(body, y, s.field[forces.GRAVITY]) - before
+    solid.pay(body, y, gained, s.field[forces.GRAVITY])
+    return before - solid.balance(body, y, s.field[forces.GRAVITY])
 
 
 @kernel
@@ -72,7 +72,7 @@ def take_step(body, tau, h, y, s):
     note_pushes(body, n, s)
     # of the ground's motion, in the effective gravity less gravity itself, and of ties
     y[solid.WORK] += h * (
-        load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[6]) * y[9]
+        load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[forces.GRAVITY]) * y[9]
     )
     y[solid.WORK] += h * algebra.dot(forces.twist_by_ties(s), solid.omega_of(y))
     for k in range(3):
