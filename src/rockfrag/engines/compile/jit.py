@@ -18,6 +18,7 @@ from numba.extending import intrinsic, register_jitable
 
 from rockfrag.base import elementary
 from rockfrag.base.errors import InputError
+from rockfrag.engines.compile.contents import contents_of
 from rockfrag.laws import couple, laws, position
 from rockfrag.runtime.lock import locked
 from rockfrag.runtime.machine_code import cached_njit
@@ -35,20 +36,29 @@ if KNOWN:
 
 
 @cache
-def _digest() -> str:
-    """Digest of all kernels' sources: those of engines, of the arithmetic and of bodies."""
-    digest = hashlib.sha256()
+def _sources() -> bytes:
+    """Sources of all kernels: those of engines, of laws, of the arithmetic and of bodies."""
     package = Path(__file__).parents[2]
-    sources = [
+    paths = [
+        # of rooms of engines; what stands beside them is no kernel
         *sorted((package / "engines").glob("*/**/*.py")),
         *sorted((package / "laws").glob("*.py")),
+        Path(elementary.__file__),
+        Path(geometry.__file__),
     ]
-    for path in [*sources, Path(elementary.__file__), Path(geometry.__file__)]:
-        digest.update(path.read_bytes())
+    return b"".join(path.read_bytes() for path in paths)
+
+
+def _digest() -> str:
+    """Digest of all that is compiled into kernels, by which their machine code is kept.
+
+    Laws may have been declared elsewhere, so that the sources do not hold them: theirs is all that they compute
+    with, whenever they were declared.
+    """
+    digest = hashlib.sha256(_sources())
     for law in laws():
-        # one that was declared elsewhere is compiled in too
-        code = b"" if law.rate is None else law.rate.__code__.co_code
-        digest.update(f"{law.name} {law.number}".encode() + code)
+        rate = "" if law.rate is None else contents_of(law.rate)
+        digest.update(f"{law.name} {law.number} {rate}\n".encode())
     return digest.hexdigest()
 
 
