@@ -50,7 +50,9 @@ STILL = 20
 # intervals that a body at rest passes at once where the ground cannot move it
 WINDOW = 16
 
-OUTCOME = 18 + 4 * solid.HOLDERS
+# outcomes of each constraint and of the bond: hits, largest impulse and force, instant of breaking
+OF_HOLDER = 4
+OUTCOME = 18 + OF_HOLDER * solid.HOLDERS
 (
     FELL, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, WALK_X, WALK_Y, TURN, STEPS,
     LOST, ENERGY_BALANCE, CERTAIN_TIME, CONTACT_EVENTS, GAINED,
@@ -59,7 +61,10 @@ OUTCOME = 18 + 4 * solid.HOLDERS
 """Outcomes; from HELD on four of each constraint and the bond: hits, impulse, force, instant of breaking."""
 
 COLUMNS = 17
+TURNED, COUNT, FIRST, SECOND = range(solid.WORK, COLUMNS)
 """Columns of a history: y[0:13], turn about the vertical, number of closed points, and the first two of them."""
+
+RESTS = 99  # stands for the number of closed points of a body at rest, which are not looked at
 
 
 @kernel
@@ -547,8 +552,15 @@ def note_fall(y, s, time, out):
     rows = algebra.rotation(y)
     out[FELL], out[CERTAIN_TIME] = 1.0, time
     out[FALL_AZIMUTH] = atan2(rows[1][2], rows[0][2])
-    out[FALL_FIRST] = s.closed[0] if s.count > 0 else -1
-    out[FALL_SECOND] = s.closed[1] if s.count > 1 else -1
+    # what it falls over is on the ground: contacts with walls are left out
+    first, second = -1, -1
+    for k in range(s.count):
+        i = s.closed[k]
+        if i < solid.WALLS and first < 0:
+            first = i
+        elif i < solid.WALLS and second < 0:
+            second = i
+    out[FALL_FIRST], out[FALL_SECOND] = first, second
 
 
 @kernel
@@ -556,12 +568,12 @@ def record(history, k, y, out, s):
     """Write a sample of the history, if there is one."""
     if k >= history.shape[0]:
         return
-    for i in range(13):
+    for i in range(solid.WORK):
         history[k, i] = y[i]
-    history[k, 13] = out[TURN]
-    history[k, 14] = 99 if s.rests else s.count
-    history[k, 15] = s.closed[0]
-    history[k, 16] = s.closed[1]
+    history[k, TURNED] = out[TURN]
+    history[k, COUNT] = RESTS if s.rests else s.count
+    history[k, FIRST] = s.closed[0]
+    history[k, SECOND] = s.closed[1]
 
 
 @kernel
@@ -886,7 +898,7 @@ def integrate(
     out[BEYOND] = s.beyond
     out[LEANS] = out[FELL] == 0.0 and body.constraints > 0 and is_beyond(body, y)
     for i in range(solid.HOLDERS):
-        at = HELD + 4 * i
+        at = HELD + OF_HOLDER * i
         out[at], out[at + 1] = s.hits[i], s.impact[i]
         out[at + 2], out[at + 3] = s.force[i], s.breaks[i]
     out[ENERGY_BALANCE] = (
