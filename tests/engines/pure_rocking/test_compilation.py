@@ -5,6 +5,7 @@ import importlib.util
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numba
@@ -14,8 +15,10 @@ from numba import TypingError
 from numba.core.types.functions import Dispatcher
 
 from rockfrag.engines.compile import jit
+from rockfrag.engines.compile.contents import contents_of
 from rockfrag.engines.pure_rocking.kernels.lanes.block import integrate_blocks
 from rockfrag.engines.pure_rocking.kernels.lanes.scheduler import integrate_stacks
+from rockfrag.laws import laws
 from rockfrag.simulation.ensemble import overturns
 from rockfrag.stages import job
 from rockfrag.system.blocks import Block, Stack
@@ -24,6 +27,7 @@ from ...conftest import printed_alone
 
 BLOCK = Block(0.3, 1.2, 200.0)
 STACK = Stack(Block(0.4, 0.3, 100.0), BLOCK)
+LAWS = laws()
 MOTION = 6.0 * np.sin(np.arange(300) * 0.06)
 
 
@@ -41,6 +45,62 @@ def test_one_compilation_serves_every_ensemble(body, entry):
 
 
 KERNELS = Path(jit.__file__).parents[1] / "pure_rocking" / "kernels"
+
+
+LAW = """
+import math
+import numba
+
+RATIO = {ratio}
+TABLE = ({entry}, 2.0)
+
+@numba.njit
+def part(moved):
+    return {part} * moved
+
+def made(closed):
+    def rate(value, by_momentum, before, moved, share={default}):
+        if moved in {{1.5, 2.5, {among}, "a", "b", "c"}}:
+            return math.{function}(moved)
+        return {written} * RATIO * TABLE[0] * closed * share * part(moved)
+    return rate
+
+rate = made({closed})
+"""
+FIRST = {
+    "ratio": 0.9, "entry": 1.0, "part": 0.5, "default": 1.0, "among": 3.5, "function": "sin", "written": 0.9,
+    "closed": 1.0,
+}  # fmt: skip
+CHANGED = {
+    "ratio": 0.8, "entry": 1.5, "part": 0.6, "default": 2.0, "among": 4.5, "function": "cos", "written": 0.8,
+    "closed": 2.0,
+}  # fmt: skip
+
+
+def law_of(values):
+    """The function ``rate`` of a law whose source has these values."""
+    names: dict = {}
+    exec(LAW.format(**values), names)
+    return names["rate"]
+
+
+@pytest.mark.parametrize("name", FIRST)
+def test_another_number_in_a_law_asks_for_other_machine_code(name, monkeypatch):
+    """Code alone is the same whatever the numbers in it: constants are not part of instructions."""
+    digests = []
+    for values in (FIRST, FIRST, FIRST | {name: CHANGED[name]}):
+        law = replace(LAWS[0], name="of this test", number=9, rate=law_of(values))
+        monkeypatch.setattr(jit, "laws", lambda law=law: (law,))
+        digests.append(jit._digest())
+    assert digests[0] == digests[1] != digests[2]
+
+
+def test_what_a_law_computes_with_is_the_same_in_every_process():
+    program = f"{LAW.format(**FIRST)}\nfrom {contents_of.__module__} import contents_of"
+    program += "\nprint(contents_of(rate))"
+    first, second = (printed_alone("-c", program, PYTHONHASHSEED=k) for k in "12")
+    assert first == second
+    assert "0.9" in first
 
 
 def test_no_kernel_has_more_than_eight_parameters():
@@ -85,6 +145,7 @@ import numba, numpy as np
 numba.__version__ = "9.9.9"
 from rockfrag import Block, overturns
 from rockfrag.engines.compile import jit
+from rockfrag.engines.compile.contents import contents_of
 assert not jit.KNOWN
 found = overturns(Block(0.3, 1.2, 200.0), 6.0 * np.sin(np.arange(300) * 0.06), 0.01, [0.5, 1.0])
 print(found.peak_velocity.ravel().tolist())
@@ -246,13 +307,3 @@ def test_what_a_run_leaves_beside_the_source_does_not_change_its_digest(
     for name in ("a.cpython-311.pyc", "a.f-1.py311.nbi", "a.f-1.py311.1.nbc", "f.lock"):
         (tmp_path / "__pycache__" / name).write_text("x")
     assert job.package_digest.__wrapped__() == before
-
-
-def test_a_law_in_which_a_number_changes_is_compiled_anew():
-    def law(number: str):
-        given: dict = {}
-        exec(f"def rate(value): return {number} * value + (lambda: 1)()", given)
-        return given["rate"]
-
-    assert jit._compiled(law("0.5")) != jit._compiled(law("0.6"))
-    assert jit._compiled(law("0.5")) == jit._compiled(law("0.5"))

@@ -18,6 +18,7 @@ with plain_library():
     from rockfrag.engines.spatial import _modes as modes
     from rockfrag.engines.spatial import _step as step
     from rockfrag.engines.spatial import _stick as stick
+    from rockfrag.engines.spatial import engine
     from rockfrag.engines.spatial._algebra import rotation
     from rockfrag.engines.spatial.body import kernel_body
     from rockfrag.system import Tie, Wall
@@ -467,3 +468,23 @@ def test_a_round_body_touches_at_its_lowest_point_which_goes_round_as_the_axis_d
     expected = np.cross(omega, np.cross(omega, lowest) + moved)
     found = solid.bias(body, tuple(r[2]), tuple(omega), lowest, body.count)
     assert found == pytest.approx(expected, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("closed", "said"),
+    [
+        ((2,), "vertex 3"),
+        ((2, 1), "edge 2-3"),
+        ((solid.WALLS + 7,), "flight"),
+        ((1, solid.WALLS + 7), "vertex 2"),
+        ((solid.WALLS + 7, 0, solid.WALLS + 6, 1), "edge 1-2"),
+        ((), "flight"),
+    ],
+)
+def test_a_body_falls_over_what_is_on_the_ground_whatever_wall_it_touches(closed, said):
+    """Corners at walls have numbers from 1000 on: a body fell over "vertex 1008"."""
+    body, s, out = uneven(np.random.default_rng(3)), case(), np.zeros(whole.OUTCOME)
+    s.count = len(closed)
+    s.closed[: s.count] = closed
+    whole.note_fall(state(np.random.default_rng(4), body), s, 1.0, out)
+    assert engine._named(body, out) == said

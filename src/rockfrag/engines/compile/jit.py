@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from functools import cache
 from pathlib import Path
-from types import CodeType, FunctionType, ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numba
@@ -18,6 +18,7 @@ from numba.extending import intrinsic, register_jitable
 
 from rockfrag.base import elementary
 from rockfrag.base.errors import InputError
+from rockfrag.engines.compile.contents import contents_of
 from rockfrag.laws import couple, laws, position
 from rockfrag.runtime.lock import locked
 from rockfrag.runtime.machine_code import cached_njit
@@ -35,35 +36,30 @@ if KNOWN:
 
 
 @cache
-def _digest() -> str:
-    """Key under which machine code is kept: digest of all that kernels are made of.
-
-    That are the sources of engines, of their arithmetic, of bodies and of laws, and the functions of laws that
-    were declared elsewhere.
-    """
-    digest = hashlib.sha256()
+def _sources() -> bytes:
+    """Sources of all kernels: those of engines, of laws, of the arithmetic and of bodies."""
     package = Path(__file__).parents[2]
-    # modules directly in the folder of engines are no kernels
-    sources = [
+    paths = [
+        # of rooms of engines; what stands beside them is no kernel
         *sorted((package / "engines").glob("*/**/*.py")),
         *sorted((package / "laws").glob("*.py")),
+        Path(elementary.__file__),
+        Path(geometry.__file__),
     ]
-    for path in [*sources, Path(elementary.__file__), Path(geometry.__file__)]:
-        digest.update(path.read_bytes())
+    return b"".join(path.read_bytes() for path in paths)
+
+
+def _digest() -> str:
+    """Digest of all that is compiled into kernels, by which their machine code is kept.
+
+    Laws may have been declared elsewhere, so that the sources do not hold them: theirs is all that they compute
+    with, whenever they were declared.
+    """
+    digest = hashlib.sha256(_sources())
     for law in laws():
-        # one that was declared elsewhere is compiled in too
-        digest.update(f"{law.name} {law.number}".encode() + _compiled(law.rate))
+        rate = "" if law.rate is None else contents_of(law.rate)
+        digest.update(f"{law.name} {law.number} {rate}\n".encode())
     return digest.hexdigest()
-
-
-def _compiled(function: Callable[..., Any] | None) -> bytes:
-    """What Python has made of a function: its instructions, with the constants and names that they use."""
-    if function is None:
-        return b""
-    code = function.__code__
-    # a function within it would be told by where it lies in memory
-    constants = [each for each in code.co_consts if not isinstance(each, CodeType)]
-    return repr((code.co_code, constants, code.co_names)).encode()
 
 
 _EVERY: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}

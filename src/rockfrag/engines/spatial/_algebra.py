@@ -2,22 +2,27 @@
 
 In: tuples of floats, and unit quaternions (world ← body). Out: likewise, or solutions in arrays. No equation of
 mechanics stands here; ``docs/space.md``, "Coordinates", says what the quaternion means.
+
+``a``, ``b``: vectors. ``rows``: the three rows of R, world ← body: the world's axes as the body sees them.
+``y``: a state, with the quaternion w + x i + y j + z k in y[3:7].
 """
 
 import math
 
 from rockfrag.engines.compile.jit import kernel
 
+TINY = 1e-300  # what a length is at least where it divides: its direction is then none, or any
+
 
 @kernel
 def dot(a, b):
-    """Scalar product."""
+    """Scalar product a·b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @kernel
 def cross(a, b):
-    """Vector product."""
+    """Vector product a × b."""
     return (
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -27,31 +32,31 @@ def cross(a, b):
 
 @kernel
 def norm(x, y):
-    """Length of a vector of two that is neither huge nor tiny."""
+    """Length of the vector (x, y), whose components are neither huge nor tiny."""
     return math.sqrt(x * x + y * y)
 
 
 @kernel
 def plus(a, b):
-    """Sum."""
+    """Sum a + b."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 @kernel
 def minus(a, b):
-    """Difference."""
+    """Difference a - b."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 @kernel
 def scaled(s, a):
-    """Multiple."""
+    """Multiple s a."""
     return (s * a[0], s * a[1], s * a[2])
 
 
 @kernel
 def times(matrix, a):
-    """Matrix (3, 3) times vector."""
+    """Product of an array (3, 3) and the vector a."""
     return (
         matrix[0, 0] * a[0] + matrix[0, 1] * a[1] + matrix[0, 2] * a[2],
         matrix[1, 0] * a[0] + matrix[1, 1] * a[1] + matrix[1, 2] * a[2],
@@ -61,7 +66,7 @@ def times(matrix, a):
 
 @kernel
 def rotation(y):
-    """Rows of R, which are the world's axes as the body sees them, from the quaternion y[3:7]."""
+    """Rows of R, which are the world's axes as the body sees them, from the quaternion of a state."""
     return rotation_of(y[3], y[4], y[5], y[6])
 
 
@@ -77,13 +82,13 @@ def rotation_of(w, x, y, z):
 
 @kernel
 def to_world(rows, a):
-    """Components in the world of a vector of the body."""
+    """Components in the world of a vector of the body, R a."""
     return (dot(rows[0], a), dot(rows[1], a), dot(rows[2], a))
 
 
 @kernel
 def to_body(rows, a):
-    """Components in the body of a vector of the world."""
+    """Components in the body of a vector of the world, Rᵀ a."""
     return (
         a[0] * rows[0][0] + a[1] * rows[1][0] + a[2] * rows[2][0],
         a[0] * rows[0][1] + a[1] * rows[1][1] + a[2] * rows[2][1],
@@ -93,19 +98,22 @@ def to_body(rows, a):
 
 @kernel
 def turn(y, angle):
-    """Turn the quaternion y[3:7] by a small rotation vector of the body, and normalise it."""
-    w, x, i, z = y[3], y[4], y[5], y[6]
+    """Turn the attitude of a state by a small rotation vector of the body [rad], and normalise it.
+
+    The quaternion q becomes q ∘ (1 + angle/2), of first order in the angle.
+    """
+    qw, qx, qy, qz = y[3], y[4], y[5], y[6]
     a, b, c = 0.5 * angle[0], 0.5 * angle[1], 0.5 * angle[2]
-    y[3] = w - (x * a + i * b + z * c)
-    y[4] = x + (w * a + i * c - z * b)
-    y[5] = i + (w * b + z * a - x * c)
-    y[6] = z + (w * c + x * b - i * a)
+    y[3] = qw - (qx * a + qy * b + qz * c)
+    y[4] = qx + (qw * a + qy * c - qz * b)
+    y[5] = qy + (qw * b + qz * a - qx * c)
+    y[6] = qz + (qw * c + qx * b - qy * a)
     normalise(y)
 
 
 @kernel
 def normalise(y):
-    """Give the quaternion y[3:7] the length 1."""
+    """Give the quaternion y[3:7] of a state the length 1."""
     length = math.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
     for i in range(3, 7):
         y[i] /= length
@@ -113,7 +121,11 @@ def normalise(y):
 
 @kernel
 def solve_symmetric(a, b, c, d, e, f, r):
-    """Solve [[a, b, c], [b, d, e], [c, e, f]] x = r by Cramer's rule."""
+    """Solve [[a, b, c], [b, d, e], [c, e, f]] x = r by Cramer's rule; return x, a tuple of three.
+
+    It is r times the cofactors, which are symmetric too, over the determinant.
+    """
+    # cofactors of the upper triangle, row by row: p, q, s and u, v and w
     p, q, s = d * f - e * e, c * e - b * f, b * e - c * d
     inverse = 1.0 / (a * p + b * q + c * s)
     u, v, w = a * f - c * c, b * c - a * e, a * d - b * b
@@ -126,7 +138,11 @@ def solve_symmetric(a, b, c, d, e, f, r):
 
 @kernel
 def factor(matrix, order, n):
-    """Factor matrix[:n, :n] in place into triangles, with rows exchanged as ``order`` says."""
+    """Factor matrix[:n, :n] in place into triangles; return whether it has an inverse.
+
+    Row k was exchanged with row ``order[k]``, that with the largest entry left in column k, before column k was
+    eliminated: the lower triangle has the multipliers, the upper one what is left.
+    """
     for k in range(n):
         best = k
         for i in range(k + 1, n):
@@ -147,7 +163,7 @@ def factor(matrix, order, n):
 
 @kernel
 def substitute(matrix, order, n, x):
-    """Solve in place with the triangles of :func:`factor`."""
+    """Solve in place, x[:n] from the right side to the solution, with the triangles of :func:`factor`."""
     for k in range(n):
         if order[k] != k:
             x[k], x[order[k]] = x[order[k]], x[k]

@@ -5,7 +5,12 @@ velocity of C (7:10, world); the angular velocity (10:13, body); the work done b
 the energy lost by friction (14).  Everything is for a unit of mass: energies in J/kg, forces in N/kg.
 
 In: a record ``BODY`` and a state. Out: arms [m], velocities [m/s] and heights of points. Theory:
-``docs/space.md``, "Coordinates", equations 1 to 3.
+``docs/space.md``, "Coordinates", equations 1 to 3 and 9.
+
+- ``rows``: the world's axes as the body sees them; ``up``: rows[2], the vertical, n of equation 3
+- ``omega``: angular velocity in the body [rad/s]; ``p``: a point of the body from C, in the body [m]
+- ``i``: number of a contact. A polygon's vertices are 0 to count - 1; the lowest point of a rim is ``count``; from
+  WALLS on follow the corners at walls: MOST_CORNERS numbers a wall, one a corner
 """
 
 import math
@@ -15,6 +20,7 @@ import numpy as np
 from rockfrag.base.arrays import fields, whole
 from rockfrag.engines.compile.jit import inlined_kernel, kernel
 from rockfrag.engines.spatial._algebra import (
+    TINY,
     cross,
     dot,
     minus,
@@ -29,6 +35,8 @@ SIZE = 15
 # where a state has the centre of mass, the attitude (a quaternion), its velocity, the angular velocity in the
 # body, the work of the ground's motion and what friction has taken
 PLACE, ATTITUDE, VELOCITY, SPIN, WORK, FRICTION = 0, 3, 7, 10, 13, 14
+# and the height of the centre of mass over the ground, and its velocity upwards
+HEIGHT, UPWARD = PLACE + 2, VELOCITY + 2
 MOST_VERTICES = 64
 MOST_CONSTRAINTS = 8  # walls and ties
 BOND = MOST_CONSTRAINTS  # row of a bond among what holds a body
@@ -85,28 +93,31 @@ BODY = np.dtype(
 
 @kernel
 def rim_contact(body):
-    """Number of the contact that is the lowest point of a rim; polygons have none."""
+    """Number of the contact that is the lowest point of a rim; -1 of a polygon, which has none."""
     return body.count if body.rim > 0 else -1
 
 
 @kernel
 def rim_direction(up):
-    """Direction in the base from its centre to the lowest point of the rim, and the sine of the tilt."""
+    """Direction in the base from its centre to the lowest point of the rim, and the sine of the tilt.
+
+    ``up`` is the vertical as the body sees it. A flat body has no lowest point: any direction will do.
+    """
     sine = norm(up[0], up[1])
-    if sine < 1e-300:
+    if sine < TINY:
         return (1.0, 0.0, 0.0), 0.0
     return (-up[0] / sine, -up[1] / sine, 0.0), sine
 
 
 @kernel
 def wall_of(i):
-    """Number of the wall of a contact."""
+    """Number of the wall of contact i, which is one of a corner with a wall."""
     return (i - WALLS) // MOST_CORNERS
 
 
 @kernel
 def arm(body, up, i):
-    """Point i from the centre of mass, in the body, where ``up`` is the vertical as the body sees it."""
+    """Point of contact i from the centre of mass, in the body [m]; ``up`` is the vertical as the body sees it."""
     if i >= WALLS:
         k = (i - WALLS) % MOST_CORNERS
         return (body.corner[k, 0], body.corner[k, 1], body.corner[k, 2])
@@ -122,22 +133,27 @@ def arm(body, up, i):
 
 @kernel
 def towards_centre(body, p, part):
-    """Point p of the base moved towards the base's centre, from which it keeps a part of its distance."""
+    """Point p of the base moved towards the base's centre, from which it keeps a part of its distance [m]."""
     x, y = body.centre[0], body.centre[1]
     return (x + part * (p[0] - x), y + part * (p[1] - y), p[2])
 
 
 @kernel
 def bias(body, up, omega, p, i):
-    """Acceleration of contact i that does not come from accelerations, ω × dρ/dt, in the body."""
+    """Acceleration of contact i that does not come from accelerations, β of equation 3, in the body [m/s²].
+
+    ``p`` is its arm. The point of a rim moves along it as the vertical turns in the body, dn/dt = n × ω.
+    """
     moved = cross(omega, p)
     if i == rim_contact(body):
         # velocity of the lowest point along the rim, by the rate of change of ``up`` in the body
         u, sine = rim_direction(up)
         turn = cross(up, omega)
         along = turn[0] * u[0] + turn[1] * u[1]
-        x, z = turn[0] - along * u[0], turn[1] - along * u[1]
-        moved = plus(moved, (-body.rim * x / sine, -body.rim * z / sine, 0.0))
+        # what turns the direction u, and the rim's point with it, against it
+        across_x, across_y = turn[0] - along * u[0], turn[1] - along * u[1]
+        scale = -body.rim
+        moved = plus(moved, (scale * across_x / sine, scale * across_y / sine, 0.0))
     return cross(omega, moved)
 
 
@@ -147,7 +163,7 @@ def arm_and_bias(body, up, omega, i):
     if i != rim_contact(body):
         p = (body.points[i, 0], body.points[i, 1], body.points[i, 2])
         return p, cross(omega, cross(omega, p))
-    per_sine = 1.0 / max(norm(up[0], up[1]), 1e-300)
+    per_sine = 1.0 / max(norm(up[0], up[1]), TINY)
     x, y = -up[0] * per_sine, -up[1] * per_sine
     p = (body.centre[0] + body.rim * x, body.centre[1] + body.rim * y, -body.height)
     # how fast the lowest point goes round the rim
@@ -172,24 +188,24 @@ def weight_of_attitude(body, y):
 
 @kernel
 def gap(body, y, up, i):
-    """Height of point i over the ground."""
-    return y[2] + dot(up, arm(body, up, i))
+    """Height of point i of the base over the ground [m]."""
+    return y[HEIGHT] + dot(up, arm(body, up, i))
 
 
 @kernel
 def gap_of(body, y, rows, i):
-    """Distance of contact i from the ground or its wall."""
+    """Distance of contact i from the ground or its wall [m]."""
     if i < WALLS:
         return gap(body, y, rows[2], i)
-    w = wall_of(i)
-    at = to_world(rows, arm(body, rows[2], i))
-    x, z = y[0] + at[0], y[1] + at[1]
-    return body.distance[w] + body.away[w, 0] * x + body.away[w, 1] * z
+    wall = wall_of(i)
+    corner = to_world(rows, arm(body, rows[2], i))
+    east, north = y[0] + corner[0], y[1] + corner[1]
+    return body.distance[wall] + body.away[wall, 0] * east + body.away[wall, 1] * north
 
 
 @kernel
 def in_frame(body, i, u):
-    """Components of a vector of the world along contact i, twice, and away from the ground or its wall."""
+    """Components of a vector u of the world: two along contact i, one away from its surface (equation 9)."""
     if i < WALLS:
         return u
     a, b = body.away[wall_of(i), 0], body.away[wall_of(i), 1]
@@ -198,7 +214,7 @@ def in_frame(body, i, u):
 
 @kernel
 def from_frame(body, i, u):
-    """Vector of the world of components along contact i, twice, and away from the ground or its wall."""
+    """Vector of the world that has the components u at contact i: :func:`in_frame` the other way round."""
     if i < WALLS:
         return u
     a, b = body.away[wall_of(i), 0], body.away[wall_of(i), 1]
@@ -207,19 +223,19 @@ def from_frame(body, i, u):
 
 @kernel
 def approach_of(body, y, rows, i):
-    """Velocity of contact i away from the ground or its wall."""
+    """Velocity of contact i away from the ground or its wall [m/s]: negative where it approaches."""
     return in_frame(body, i, velocity_of(body, y, rows, i))[2]
 
 
 @kernel
 def static_of(body, i):
-    """Coefficient of static friction of contact i."""
+    """Coefficient of static friction of contact i [-]."""
     return body.static if i < WALLS else body.wall_static[wall_of(i)]
 
 
 @kernel
 def kinetic_of(body, i):
-    """Coefficient of kinetic friction of contact i."""
+    """Coefficient of kinetic friction of contact i [-]."""
     return body.kinetic if i < WALLS else body.wall_kinetic[wall_of(i)]
 
 
@@ -231,39 +247,42 @@ def is_smooth(body, i):
 
 @kernel
 def wall_candidates(body):
-    """Numbers of the contacts of walls that come before and after all there may be; none without a wall."""
+    """All numbers that contacts of corners with walls can have; none without a wall.
+
+    Among them are numbers of corners and walls that are not there: :func:`may_meet` tells.
+    """
     return range(WALLS, WALLS + MOST_CORNERS * (body.constraints if body.walls else 0))
 
 
 @kernel
 def may_meet(body, i):
-    """Whether contact i of a wall is of a corner and a wall that there are."""
+    """Whether contact i is of a corner and a wall that are there; ties have numbers among walls."""
     there = (i - WALLS) % MOST_CORNERS < body.corners
     return there and not body.ties[wall_of(i)]
 
 
 @kernel
 def omega_of(y):
-    """Angular velocity in the body."""
-    return (y[10], y[11], y[12])
+    """Angular velocity in the body [rad/s]."""
+    return (y[SPIN], y[SPIN + 1], y[SPIN + 2])
 
 
 @kernel
 def point_velocity(y, rows, p):
-    """Velocity in the world of the body's point p."""
+    """Velocity in the world of the body's point p [m/s]."""
     turned = to_world(rows, cross(omega_of(y), p))
     return (y[7] + turned[0], y[8] + turned[1], y[9] + turned[2])
 
 
 @kernel
 def velocity_of(body, y, rows, i):
-    """Velocity in the world of point i."""
+    """Velocity in the world of contact i, a vertex, the lowest point of a rim or a corner at a wall [m/s]."""
     return point_velocity(y, rows, arm(body, rows[2], i))
 
 
 @kernel
 def kinetic_energy(body, y):
-    """Energy of motion [J/kg]."""
+    """Energy of motion, v²/2 + ω·J ω/2 [J/kg]."""
     omega = omega_of(y)
     return 0.5 * (
         y[7] ** 2 + y[8] ** 2 + y[9] ** 2 + dot(omega, times(body.inertia, omega))
@@ -272,13 +291,13 @@ def kinetic_energy(body, y):
 
 @kernel
 def energy(body, y, g):
-    """Kinetic energy and the energy of height over rest [J/kg]."""
-    return kinetic_energy(body, y) + g * (y[2] - body.height)
+    """Kinetic energy and the energy of height over rest, with the acceleration of gravity g [J/kg]."""
+    return kinetic_energy(body, y) + g * (y[HEIGHT] - body.height)
 
 
 @kernel
 def is_known(y):
-    """Whether all of a state are numbers."""
+    """Whether all of a state are numbers, none of them infinite."""
     known = True
     for i in range(SIZE):
         known = known and math.isfinite(y[i])
@@ -287,17 +306,20 @@ def is_known(y):
 
 @kernel
 def balance(body, y, g):
-    """Energy less the work of the ground's motion, which nothing changes while a body turns about a contact."""
+    """Energy less the work of the ground's motion [J/kg]: constant while a body turns about a contact."""
     return energy(body, y, g) - y[WORK]
 
 
 @kernel
 def pay(body, y, gained, g):
-    """Take energy that was gained [J/kg] from the velocities, as far as there is any."""
-    moving = energy(body, y, g) - g * (y[2] - body.height)
-    if gained > 0.0 and moving > 0.0:
-        for k in range(7, 13):
-            y[k] *= math.sqrt(max(1.0 - gained / moving, 0.0))
+    """Take energy that was gained [J/kg] from the velocities, as far as there is any.
+
+    All velocities shrink by √(1 - gained/kinetic energy).
+    """
+    kinetic = energy(body, y, g) - g * (y[HEIGHT] - body.height)
+    if gained > 0.0 and kinetic > 0.0:
+        for k in range(VELOCITY, WORK):
+            y[k] *= math.sqrt(max(1.0 - gained / kinetic, 0.0))
 
 
 @kernel
@@ -311,28 +333,34 @@ def meets_walls_alone(body):
 
 @kernel
 def free_spin(body, omega, moment):
-    """Angular acceleration under a moment other than those of contacts, in the body."""
+    """Angular acceleration without contacts, J⁻¹ (moment - ω × J ω), in the body [rad/s²].
+
+    ``moment`` is that of ties, for a unit of mass [N m/kg].
+    """
     left = minus(moment, cross(omega, times(body.inertia, omega)))
     return times(body.inverse, left)
 
 
 @kernel
 def candidates(body):
-    """Numbers of the points that may touch when the body is not flat: the rim's, or the vertices."""
+    """Numbers of the contacts with the ground of a body that is not flat: the rim's alone, or the vertices."""
     first = body.count if body.rim > 0 else 0
     return range(first, body.count + (first > 0))
 
 
 @kernel
 def meetings(body):
-    """How many contacts there may be with the ground and all walls, numbered by :func:`meeting`."""
+    """How many contacts there may be with the ground and all walls, numbered by :func:`meeting`.
+
+    Walls include ties, which nothing meets.
+    """
     on_ground = 1 if body.rim > 0 else body.count
     return on_ground + body.corners * (body.constraints if body.walls else 0)
 
 
 @kernel
 def meeting(body, k):
-    """Contact number k of all that there may be."""
+    """Number of the k-th of all contacts that there may be, as :func:`arm` takes it: the ground's first."""
     on_ground = 1 if body.rim > 0 else body.count
     if k < on_ground:
         return body.count if body.rim > 0 else k
@@ -342,6 +370,6 @@ def meeting(body, k):
 
 @kernel
 def position_of_base(y, rows, p):
-    """Where in the plan the body's point p is."""
+    """Where in the plan the body's point p is, (x, y) in axes of the ground [m]."""
     moved = to_world(rows, p)
     return (y[0] + moved[0], y[1] + moved[1])

@@ -6,9 +6,12 @@ for at most four contacts.  Sets of contacts that push are tried, the smallest f
 stick if the cones allow it; if not, Newton's method on the projections of Alart and Curnier (1991) finds which
 slide and where to.
 
-In: the matrix W [-, for a unit of mass], b [m/s], friction. Out: impulses P and which contacts stick or slide.
-Theory: ``docs/space.md``,
-equation 5.
+In: fields of the record ``s`` for n contacts: ``delassus``, W [-, for a unit of mass], (3 n, 3 n); ``free``, b
+[m/s]; ``friction`` and ``holds``, coefficients of what slides and what sticks. Out: ``impulse``, P [m/s];
+``after``, u [m/s]; ``grip``, the coefficient that each contact had. Theory: ``docs/space.md``, equations 5, 13-17.
+
+Contact i has the rows 3 i and 3 i + 1 along its surface and 3 i + 2 away from it. A set is a ``mask`` of bits, or
+the ``size`` numbers in ``s.member``. ``given[i]``: contact i slides, along the unit vector ``way[i]``.
 """
 
 import math
@@ -18,6 +21,7 @@ import numpy as np
 from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial._algebra import (
+    TINY,
     factor,
     norm,
     substitute,
@@ -38,10 +42,23 @@ ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
 SOFT = 1e-8
 # residual over what is to be stopped at which Newton's method ends [-]
 CLOSE_ENOUGH = 1e-13
+# velocity over the largest one to stop that is rounding [-]; shear beyond a cone, over its limit, that is [-];
+# difference of energy over the square of that velocity below which two sets do equally well [-]
+ROUNDING, ON_CONE, EQUAL = 1e-11, 1e-12, 1e-12
+# slip over the largest velocity to stop above which a contact slides [-]
+SLIPS = 1e-9
 NEWTON_STEPS = 32
+# part of a step by which the residual has to fall, else the step is halved [-]; residual over the wanted one that
+# will do at last [-]
+FALLS_BY, GOOD_ENOUGH = 0.1, 100
+# added to the derivative, so that a direction that W leaves open is not stepped along [-]
+STAYS = 1e-11
 HALVINGS = 12  # times that a step of Newton's method is halved at most
 # steps that may leave the residual as it was; then there is no solution nearby
 MOST_STUCK = 4
+RIGHT_ANGLE = 1.5707963267948966  # [rad]
+# steps of false position at most, and the part between two directions at which it ends [-]
+SEARCHES, NARROW = 60, 1e-15
 
 RAYS = np.array(
     [(4.0, y) for y in range(-4, 4)]
@@ -50,12 +67,12 @@ RAYS = np.array(
     + [(x, -4.0) for x in range(-4, 4)]
 )
 RAYS /= np.sqrt((RAYS * RAYS).sum(axis=1, keepdims=True))
-"""Directions between which that of a slip is looked for, the same bits everywhere."""
+"""Directions between which that of a slip is looked for, around a square: the same bits everywhere."""
 
 
 @kernel
 def fill_after(s, n):
-    """Fill in the velocities after the impulses, u = W P + b."""
+    """Fill s.after with the velocities of n contacts after the impulses, u = W P + b."""
     for i in range(3 * n):
         value = s.free[i]
         for j in range(3 * n):
@@ -65,21 +82,24 @@ def fill_after(s, n):
 
 @kernel
 def cones_hold(s, n, mask, small):
-    """Whether the impulses of a set push, and stay within the cones of the contacts that stick."""
+    """Whether the impulses of a set push, and are within the cones of its contacts that stick.
+
+    What slides a given way has the shear of its cone anyway. ``small`` is an impulse that is rounding [m/s].
+    """
     for i in range(n):
         if in_set(mask, i):
-            p = s.impulse[3 * i + 2]
-            if p < -small:
+            normal = s.impulse[3 * i + 2]
+            if normal < -small:
                 return False
             shear = norm(s.impulse[3 * i], s.impulse[3 * i + 1])
-            if not s.given[i] and shear > s.grip[i] * p * (1 + 1e-12) + small:
+            if not s.given[i] and shear > s.grip[i] * normal * (1 + ON_CONE) + small:
                 return False
     return True
 
 
 @kernel
 def members(s, n, mask):
-    """Fill s.member with the contacts of a set; return how many there are."""
+    """Fill s.member with the numbers of the contacts of a set; return how many there are."""
     size = 0
     for i in range(n):
         if in_set(mask, i):
@@ -90,7 +110,11 @@ def members(s, n, mask):
 
 @kernel
 def residuals(s, size, x, pace, out):
-    """Residuals of the projections of the set's contacts; return the largest that counts as a velocity."""
+    """Fill ``out`` with the residuals of equation 17 (``docs/space.md``) for the members of a set, three each.
+
+    ``x`` holds trial impulses as s.impulse does, and ``pace`` is ϱ, 1 over the largest compliance, which makes an
+    impulse of a velocity. s.after gets the velocities. Returned is the largest residual as a velocity [m/s].
+    """
     worst = 0.0
     for m in range(size):
         a = 3 * s.member[m]
@@ -112,8 +136,8 @@ def residuals(s, size, x, pace, out):
             u, v = x[a] - pace * s.after[a], x[b] - pace * s.after[b]
             limit = s.grip[i] * max(x[c], 0.0)
             length = norm(u, v)
-            factor_ = 1.0 if length <= limit else limit / length
-            out[3 * m], out[3 * m + 1] = x[a] - factor_ * u, x[b] - factor_ * v
+            shortened = 1.0 if length <= limit else limit / length
+            out[3 * m], out[3 * m + 1] = x[a] - shortened * u, x[b] - shortened * v
         for k in range(3 * m, 3 * m + 3):
             worst = max(worst, abs(out[k]))
     return worst / pace
@@ -121,7 +145,12 @@ def residuals(s, size, x, pace, out):
 
 @kernel
 def slopes_in_plane(s, m, x, pace, size):
-    """Fill in the rows of the projection's derivative for the shear of a set's contact that may slide."""
+    """Fill s.matrix with the two rows of the derivative of P_t - Π(P_t - ϱ u_t), for member m of a set.
+
+    ``x`` and ``pace`` are as in :func:`residuals`. Within the cone Π changes nothing and ϱ u_t is left. Outside,
+    with the unit vector (e, f) of P_t - ϱ u_t and ``ratio``, the limit over its length, a change d of P_t - ϱ u_t
+    changes Π by ratio times its part across (e, f), and a change of the limit by that along (e, f).
+    """
     i = s.member[m]
     a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
     u, v = x[a] - pace * s.after[a], x[b] - pace * s.after[b]
@@ -141,18 +170,18 @@ def slopes_in_plane(s, m, x, pace, size):
             du = -pace * s.delassus[a, j] + (1.0 if j == a else 0.0)
             dv = -pace * s.delassus[b, j] + (1.0 if j == b else 0.0)
             along = e * du + f * dv
-            grow = s.grip[i] if j == c and x[c] > 0 else 0.0
+            longer = s.grip[i] if j == c and x[c] > 0 else 0.0
             s.matrix[3 * m, at] = (
-                (1.0 if j == a else 0.0) - ratio * (du - along * e) - grow * e
+                (1.0 if j == a else 0.0) - ratio * (du - along * e) - longer * e
             )
             s.matrix[3 * m + 1, at] = (
-                (1.0 if j == b else 0.0) - ratio * (dv - along * f) - grow * f
+                (1.0 if j == b else 0.0) - ratio * (dv - along * f) - longer * f
             )
 
 
 @kernel
 def fill_slopes(s, size, x, pace):
-    """Fill in the derivative of the residuals."""
+    """Fill s.matrix, (3 size, 3 size), with the derivative of :func:`residuals` by the impulses of a set."""
     for m in range(size):
         i = s.member[m]
         row = 3 * m
@@ -171,12 +200,16 @@ def fill_slopes(s, size, x, pace):
             slopes_in_plane(s, m, x, pace, size)
         # redundant directions: the step stays where it is
         for k in range(3):
-            s.matrix[row + k, row + k] += 1e-11
+            s.matrix[row + k, row + k] += STAYS
 
 
 @kernel
 def newton(s, size, pace, small):
-    """Improve the impulses of the members of a set until the residuals vanish; return whether they do."""
+    """Improve the impulses of a set until :func:`residuals` is at most ``small`` [m/s]; return whether it is.
+
+    The method is damped: a step is halved until the residual falls. ``s.right`` holds the residuals, ``s.vector``
+    the step, ``s.trial`` the impulses after it. It gives up where steps leave the residual as it was.
+    """
     x = s.impulse
     worst = residuals(s, size, x, pace, s.right)
     stuck = 0
@@ -196,7 +229,7 @@ def newton(s, size, pace, small):
                     j = 3 * s.member[m] + k
                     s.trial[j] = x[j] + step * s.vector[3 * m + k]
             least = residuals(s, size, s.trial, pace, s.right)
-            if least < worst * (1 - 0.1 * step) or least <= small:
+            if least < worst * (1 - FALLS_BY * step) or least <= small:
                 break
             step *= 0.5
         for m in range(size):
@@ -206,12 +239,15 @@ def newton(s, size, pace, small):
         if stuck > MOST_STUCK:
             return False
         worst = least
-    return worst <= 100 * small
+    return worst <= GOOD_ENOUGH * small
 
 
 @kernel
 def start_sliding(s, n, mask, turned):
-    """Begin with each contact of a set stopped alone, sliding the way it came, turned by an angle."""
+    """Begin with each contact of a set stopped alone and sliding: fill s.impulse for :func:`newton`.
+
+    It slides the way it came, turned by an angle ``turned`` [rad], or its given way.
+    """
     for i in range(n):
         a = 3 * i
         s.impulse[a] = s.impulse[a + 1] = s.impulse[a + 2] = 0.0
@@ -219,7 +255,7 @@ def start_sliding(s, n, mask, turned):
             continue
         normal = max(-s.free[a + 2], 0.0) / s.delassus[a + 2, a + 2]
         u, v = s.free[a], s.free[a + 1]
-        size = max(norm(u, v), 1e-300)
+        size = max(norm(u, v), TINY)
         e, f = u / size, v / size
         sine, cosine = sin_cos(turned)
         e, f = e * cosine - f * sine, e * sine + f * cosine
@@ -233,7 +269,7 @@ def start_sliding(s, n, mask, turned):
 
 @kernel
 def others_open(s, n, mask, small):
-    """Whether contacts outside of a set do not approach."""
+    """Whether no contact outside of a set approaches faster than ``small`` [m/s]."""
     found = True
     for i in range(n):
         found = found and (in_set(mask, i) or not s.after[3 * i + 2] < -small)
@@ -242,7 +278,11 @@ def others_open(s, n, mask, small):
 
 @kernel
 def stick_set(s, n, mask, size, largest):
-    """Solve for one set that sticks, and what it holds with; return whether its equations have a solution."""
+    """Solve for the impulses at which one set sticks, and fill s.grip; whether its equations have a solution.
+
+    ``largest`` is the largest compliance. Contacts that slipped before may have lost their static friction; an
+    edge then splits its impulse anew.
+    """
     for m in range(size):
         s.grip[s.member[m]] = s.holds[s.member[m]]
     if not stop_set(s, n, mask, size, largest):
@@ -254,7 +294,11 @@ def stick_set(s, n, mask, size, largest):
 
 @kernel
 def stop_set(s, n, mask, size, largest):
-    """Solve for the impulses at which one set stops (or slides the given way); whether there is a solution."""
+    """Solve for the impulses at which one set stops (or slides the given way); whether there is a solution.
+
+    Arguments are those of :func:`stick_set`. One contact has a closed form; of two the impulse along their edge is
+    split.
+    """
     for i in range(3 * n):
         s.impulse[i] = 0.0
     if size == 1:
@@ -271,8 +315,9 @@ def stop_set(s, n, mask, size, largest):
 def lose_grip(s, n, mask, size, largest):
     """Give contacts that slipped before kinetic friction where Routh's path asks for it; whether there are any.
 
-    Slip that ends is rubbed by kinetic friction until it does, so a shear against it is of that.  A shear along it
-    is of what has stuck since, if what then comes down straight is within the static cone; else slip never ends.
+    Slip that ends is rubbed by kinetic friction until it does, so a shear against it (``s.came``) is of that. A
+    shear along it is of what has stuck since. That holds if what comes down straight, the same velocities without
+    slip, is within the static cone; else slip never ends (``docs/space.md``, "Friction and impacts").
     """
     lost, regains = False, False
     for m in range(size):
@@ -286,6 +331,7 @@ def lose_grip(s, n, mask, size, largest):
                 s.grip[i], lost = s.friction[i], True
     if not regains:
         return lost
+    # the same set as it would come down straight
     for i in range(3 * n):
         s.trial[i], s.kept[i] = s.impulse[i], s.free[i]
         if i % 3 != 2:
@@ -303,7 +349,7 @@ def lose_grip(s, n, mask, size, largest):
 
 @kernel
 def stick_alone(s, i):
-    """Solve for the impulse at which the one contact of a set sticks (or slides the given way)."""
+    """Solve for the impulse at which contact i, alone in its set, sticks (or slides the given way)."""
     a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
     w = s.delassus
     if s.given[i]:
@@ -327,10 +373,10 @@ def slide_set(s, n, mask, size, largest, scale):
     its shears shortened to the cones, and go on by Newton's method; where that leads nowhere, slips in four
     directions at right angles are tried. Contacts that then slip have kinetic friction.
 
-    In: set ``mask`` of ``size`` contacts among n, the largest compliance and the scale of velocities. Out: the
-    impulses in s.impulse.
+    In: set ``mask`` of ``size`` contacts among n, the largest compliance [-] and the scale of velocities [m/s].
+    Out: the impulses in s.impulse.
     """
-    small, pace = 1e-11 * scale, 1.0 / largest
+    small, pace = ROUNDING * scale, 1.0 / largest
     if size == 1:
         return slide_alone(s, n, s.member[0])
     if size == 2 and slide_one_end(s, n, small):
@@ -342,16 +388,16 @@ def slide_set(s, n, mask, size, largest, scale):
     for k in range(4):
         if found and cones_hold(s, n, mask, small / largest):
             break
-        start_sliding(s, n, mask, 1.5707963267948966 * k)
+        start_sliding(s, n, mask, RIGHT_ANGLE * k)
         found = newton(s, size, pace, CLOSE_ENOUGH * scale)
-    while found and slip_kinetically(s, size, 1e-9 * scale):
+    while found and slip_kinetically(s, size, SLIPS * scale):
         found = newton(s, size, pace, CLOSE_ENOUGH * scale)
     return found
 
 
 @kernel
 def shorten_to_cones(s, n, mask):
-    """Shorten the shear of each contact of a set to what friction allows under its normal impulse."""
+    """Shorten the shear of each contact of a set to what friction allows under its normal impulse; fill s.grip."""
     for i in range(n):
         if in_set(mask, i) and not s.given[i]:
             a = 3 * i
@@ -367,7 +413,8 @@ def shorten_to_cones(s, n, mask):
 def slide_one_end(s, n, small):
     """Solve for the two contacts of a set of which one sticks and the other slides across; whether there is such.
 
-    The slip of the one is across the line between them, to one side or the other: four cases, each linear.
+    The slip of the one is across the line between them, to one side or the other: four cases, each linear
+    (``docs/space.md``, equation 14). ``small`` is a velocity that is rounding [m/s].
     """
     for k in range(2):
         sticks, slides = s.member[k], s.member[1 - k]
@@ -386,7 +433,11 @@ def slide_one_end(s, n, small):
 
 @kernel
 def slides_to(s, n, sticks, slides, way, small):
-    """Solve for a contact that sticks and one that slides the given way; whether both do so within their cones."""
+    """Solve for contact ``sticks`` and contact ``slides``, along the unit vector ``way``; whether both do so.
+
+    The one has to stay within its cone, the other to slip along ``way`` and not off it by more than ``small``
+    [m/s].
+    """
     a, b = 3 * sticks, 3 * slides
     push, normal, unit = push_by_two(s, sticks, slides, way, s.grip[slides])
     shear = norm(push[0], push[1])
@@ -404,7 +455,10 @@ def slides_to(s, n, sticks, slides, way, small):
 
 @kernel
 def slip_kinetically(s, size, slow):
-    """Give contacts of a set that slide with static friction kinetic one; whether there were any."""
+    """Give contacts of a set that slide with static friction kinetic one; whether there were any.
+
+    What slips by no more than ``slow`` [m/s] does not slide.
+    """
     changed = False
     for m in range(size):
         i = s.member[m]
@@ -416,28 +470,35 @@ def slip_kinetically(s, size, slow):
 
 @kernel
 def off_direction(s, i, e, f):
-    """How far contact i, if it slides towards (e, f), would be driven off that direction; and its impulse.
+    """How far contact i is driven off the unit vector (e, f) along which it slides (``docs/space.md``, 16).
 
-    Both the slip across (e, f) and the denominator of the impulse are linear in (e, f), so that their product has
-    at most four zeros around the circle.
+    Returned are, with s = (e, f), the slip across it times d, s × z [m/s]; d, by which the normal impulse is
+    -b_n/d; and the slip along it times d, s·z [m/s]. Both d and z are linear in s, so that s × z has at most four
+    zeros around the circle.
     """
     a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
-    w, m = s.delassus, s.friction[i]
-    gives = w[c, c] - m * (w[c, a] * e + w[c, b] * f)
-    x = s.free[a] * gives - s.free[c] * (w[a, c] - m * (w[a, a] * e + w[a, b] * f))
-    y = s.free[b] * gives - s.free[c] * (w[b, c] - m * (w[b, a] * e + w[b, b] * f))
-    return e * y - f * x, gives, e * x + f * y
+    w, mu = s.delassus, s.friction[i]
+    d = w[c, c] - mu * (w[c, a] * e + w[c, b] * f)
+    # z, the slip times d
+    x = s.free[a] * d - s.free[c] * (w[a, c] - mu * (w[a, a] * e + w[a, b] * f))
+    y = s.free[b] * d - s.free[c] * (w[b, c] - mu * (w[b, a] * e + w[b, b] * f))
+    across, along = e * y - f * x, e * x + f * y
+    return across, d, along
 
 
 @kernel
 def slide_alone(s, n, i):
-    """Solve for the impulse at which the one contact of a set slides, with the least energy left, if it can."""
+    """Solve for the impulse at which contact i, alone in its set, slides, with the least energy left, if it can.
+
+    All zeros of equation 16 (``docs/space.md``) between two neighbours of RAYS are tried. Returned is whether one
+    of them pushes and slides.
+    """
     for j in range(3 * n):
         s.impulse[j] = 0.0
     if s.given[i]:
         return False
     a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
-    found, least = False, 0.0
+    found, least, mu = False, 0.0, s.friction[i]
     p, q = RAYS[-1, 0], RAYS[-1, 1]
     before = off_direction(s, i, p, q)[0]
     for k in range(RAYS.shape[0]):
@@ -445,28 +506,31 @@ def slide_alone(s, n, i):
         after = off_direction(s, i, u, v)[0]
         if (before > 0) != (after > 0):
             e, f = direction_between(s, i, p, q, u, v, before, after)
-            _, gives, slip = off_direction(s, i, e, f)
-            normal = -s.free[c] / gives if gives != 0.0 else -1.0
-            # the slip is over the denominator of the impulse
-            if normal > 0 and slip * gives > 0:
-                left = normal * (
-                    s.free[c] - s.friction[i] * (s.free[a] * e + s.free[b] * f)
-                )
-                left -= normal * s.friction[i] * slip / gives
+            _, d, slip = off_direction(s, i, e, f)
+            normal = -s.free[c] / d if d != 0.0 else -1.0
+            # the slip is still times d
+            if normal > 0 and slip * d > 0:
+                # twice the change of energy, P·b + P·u
+                left = normal * (s.free[c] - mu * (s.free[a] * e + s.free[b] * f))
+                left -= normal * mu * slip / d
                 if not found or left < least:
                     found, least = True, left
-                    s.impulse[a], s.impulse[c] = -s.friction[i] * normal * e, normal
-                    s.impulse[b] = -s.friction[i] * normal * f
+                    s.impulse[a], s.impulse[c] = -mu * normal * e, normal
+                    s.impulse[b] = -mu * normal * f
         p, q, before = u, v, after
     return found
 
 
 @kernel
 def direction_between(s, i, p, q, u, v, before, after):
-    """Find the direction between two at which a sliding contact stays on it, by false position (Illinois)."""
+    """Find the unit vector between (p, q) and (u, v) at which contact i is not driven off it.
+
+    ``before`` and ``after`` are the first of :func:`off_direction` at these two, of opposite signs. The root is
+    found by false position with halved ends (Illinois).
+    """
     low, high, side = 0.0, 1.0, 0
     e, f = p, q
-    for _ in range(60):
+    for _ in range(SEARCHES):
         part = (low * after - high * before) / (after - before)
         e, f = p + part * (u - p), q + part * (v - q)
         size = norm(e, f)
@@ -480,18 +544,22 @@ def direction_between(s, i, p, q, u, v, before, after):
             high, after = part, value
             before *= 0.5 if side < 0 else 1.0
             side = -1
-        if value == 0.0 or high - low < 1e-15:
+        if value == 0.0 or high - low < NARROW:
             break
     return e, f
 
 
 @kernel
 def fraction_in_set(s, first, second):
-    """Share along the edge between the two contacts of a set so that both cones hold, if they can and may."""
+    """Split the impulse along the edge between two contacts so that both cones hold, if they can.
+
+    In and out: s.impulse (``docs/space.md``, equation 13). What slides a given way is left as it is.
+    """
     if s.given[first] or s.given[second]:
         return
     edge = (s.edge[first, second, 0], s.edge[first, second, 1])
     p, along = s.impulse, 0.0
+    # what the cones of both leave for a part along the edge
     room_for = (0.0, 0.0)
     for i in (first, second):
         part = p[3 * i] * edge[0] + p[3 * i + 1] * edge[1]
@@ -500,8 +568,8 @@ def fraction_in_set(s, first, second):
         p[3 * i + 1] -= part * edge[1]
         free = (s.grip[i] * p[3 * i + 2]) ** 2 - p[3 * i] ** 2 - p[3 * i + 1] ** 2
         room_for = (room_for[1], math.sqrt(max(free, 0.0)))
-    whole = room_for[0] + room_for[1]
-    part = 0.5 if whole == 0.0 else room_for[0] / whole
+    both = room_for[0] + room_for[1]
+    part = 0.5 if both == 0.0 else room_for[0] / both
     for k in range(2):
         p[3 * first + k] += part * along * edge[k]
         p[3 * second + k] += (1.0 - part) * along * edge[k]
@@ -512,7 +580,7 @@ def solve_cones(s, n, least):
     """Find the impulses: all that push stick if that is possible; the fewest that push; the least energy left.
 
     At ``least`` so many of the n contacts push. Returned are the set that pushes as bits (-1 if none was found),
-    and how many sets of that size would do.
+    and how many sets of that size would do; s.impulse, s.after and s.grip have the solution.
     """
     chosen, solutions = fewest(s, n, least, False)
     if chosen < 0:
@@ -533,12 +601,12 @@ def fewest(s, n, least, slide):
     Returned are the set, as bits, -1 if there is none, and how many sets of that size there are; s.best has its
     impulses. Sets are tried by size, so that larger ones are left out as soon as one is found.
     """
-    largest, scale = largest_compliance(s, n), 1e-300
+    largest, scale = largest_compliance(s, n), TINY
     for i in range(3 * n):
         # the largest velocity (or acceleration) that there is to stop
         scale = max(scale, abs(s.free[i]))
-    small = 1e-11 * scale
-    chosen, solutions, size_found, lowest = -1, 0, 99, 0.0
+    small = ROUNDING * scale
+    chosen, solutions, size_found, lowest = -1, 0, MOST, 0.0
     for k in range(1 << MOST):
         mask = ORDER[k]
         size = members(s, n, mask)
@@ -557,7 +625,7 @@ def fewest(s, n, least, slide):
         ):
             solutions += 1
             change = change_of_energy(s, n)
-            if chosen < 0 or change < lowest - 1e-12 * scale * scale:
+            if chosen < 0 or change < lowest - EQUAL * scale * scale:
                 chosen, lowest, size_found = mask, change, size
                 keep_best(s, n)
     return chosen, solutions
@@ -565,7 +633,7 @@ def fewest(s, n, least, slide):
 
 @kernel
 def change_of_energy(s, n):
-    """Change of kinetic energy by the impulses: P·b + P·W P / 2."""
+    """Change of kinetic energy by the impulses, P·b + P·W P/2 = P·(b + u)/2 [J/kg]."""
     change = 0.0
     for i in range(3 * n):
         change += 0.5 * s.impulse[i] * (s.free[i] + s.after[i])
@@ -574,7 +642,7 @@ def change_of_energy(s, n):
 
 @kernel
 def keep_best(s, n):
-    """Keep impulses and friction of a set."""
+    """Keep the impulses and the friction of a set as the best so far."""
     for i in range(3 * n):
         s.best[i] = s.impulse[i]
     for i in range(n):

@@ -1,8 +1,14 @@
 """Accelerations and contact forces of a mode: which points are closed, and which of them slide.
 
 In: a record ``BODY``, a state y, the ground's acceleration [m/s²] and a mode. Out: dy/dt, and the forces of the
-closed points [N/kg]. Theory: ``docs/space.md``, equations 2 to 4; a face that
-slides 6 and 7.
+closed points [N/kg]. Theory: ``docs/space.md``, equations 2 to 4; a face that slides 6 and 7; systems of contacts
+9 to 15.
+
+- ``rows``: the world's axes as the body sees them, ``up`` = rows[2]; ``omega``: angular velocity in the body
+- ``gravity``: effective gravity in the world [m/s²]; ``weight``: the same and the ties' force, in the body [N/kg]
+- ``i``, ``j``: numbers of contacts, ``p``, ``q`` their arms from the centre of mass, in the body [m]
+- ``s``: record ``CASE``; contact k of a small system has the rows 3 k, 3 k + 1 (along) and 3 k + 2 (away)
+- ``twist``: part of its distance from the base's centre at which the friction of a contact acts (:func:`twist_of`)
 """
 
 import math
@@ -31,11 +37,15 @@ from rockfrag.engines.spatial._algebra import (
 MOST = 4  # contacts that carry at once
 MOST_NEAR = 16  # contacts that a step of time stepping looks at
 STICKS, SLIDES = 0, 1
+# kinds of a mode: nothing closed; one contact that sticks; two; any other; at rest; one contact that slides
 FLIGHT, PIVOT, HINGE, GENERAL, REST, SLIDER = 0, 1, 2, 3, 4, 5
 # slip velocity below which a point slips in the direction noted, if at all [m/s]
 SLIP_FLOOR = 1e-4
 # part of the largest compliance that is added to all, so that redundant forces are the least ones [-]
 SOFTNESS = 1e-9
+PASSES = 3  # in which what the softness shifts is removed (equation 15)
+# place of the gravity on ground at rest [m/s²] in s.field, behind the effective one and its rate
+GRAVITY = 6
 STAGES = 7
 # of the series of an angle in a step
 HINGE_ORDER = 7
@@ -44,8 +54,8 @@ TURNING = 10
 
 CASE = np.dtype(
     [
-        # the mode: number of closed points, whether it rests; whether nothing holds but what sticks, so that cones
-        # are not looked at; whether the rates at the end of the last step are still right
+        # the mode: number of closed points; whether the body rests; whether what is closed sticks whatever its
+        # cone says (jammed); whether the rates at the end of the last step are those at the beginning of the next
         *whole("count rests jammed goes_on"),
         # numbers of the closed points, and which of them slide ...
         *whole("closed slides", MOST),
@@ -53,17 +63,21 @@ CASE = np.dtype(
         *fields(
             "lam", MOST, 3
         ),  # contact forces or impulses, along each contact and across it
-        # effective gravity at the beginning of the interval, its rate, and gravity on ground at rest
+        # effective gravity at the beginning of the interval [m/s²], its rate [m/s³], and at GRAVITY that of a
+        # ground at rest
         *fields("field", 7),
-        # a small system: contacts, whether and which way of slip is given; whether they slipped before an impact,
-        # and where to; coefficients of what slides, of what has not slipped, of what sticks (tried, and chosen);
-        # directions between
+        # a small system of contacts that touch: their numbers (which); whether a contact slides along a unit
+        # vector (given, way); whether it slipped before an impact, and where to (slid, came)
         *whole("which given slid", MOST),
         *fields("way came", MOST, 2),
         # velocities (or accelerations) of contacts but for the body's rotation, in the body
         *fields("load", MOST, 3),
+        # coefficients of friction of a contact: kinetic (friction), static (holds), the one it is tried with
+        # (grip), and that of the best set; unit vectors along the surface from contact to contact (edge)
         *fields("friction holds grip best_grip", MOST),
         *fields("edge", MOST, MOST, 2),
+        # W of equation 10; velocities without impulses b (free), impulses P, velocities after them W P + b
+        # (after), all along and away from each contact; the rest is memory of what solves for them
         *fields("delassus matrix", 3 * MOST, 3 * MOST),
         *fields("free vector right unknown impulse after best trial kept", 3 * MOST),
         *whole("order", 3 * MOST),
@@ -85,7 +99,7 @@ CASE = np.dtype(
         *fields("beyond"),
         # velocity after an impact below which a point that touches stays closed [m/s]
         *fields("close"),
-        # force and moment of the ties, in the body, for a unit of mass
+        # force and moment of the ties, in the body, for a unit of mass [N/kg, N m/kg]
         *fields("pulled twisted", 3),
         # whether a bond is whole; of each constraint whether it has broken, and whether a tie is taut; how often
         # it was hit, the largest impulse and force for a unit of mass, and when it broke [s]
@@ -94,9 +108,10 @@ CASE = np.dtype(
         *fields("began"),
         *whole("broken taut", solid.MOST_CONSTRAINTS),
         *fields("hits impact force breaks", solid.HOLDERS),
-        # contacts near ground and walls in time stepping; how fast each may close [m/s], its friction, what an
-        # impulse along each of its axes gives to its velocity there, its impulse for a unit of mass, and that by
-        # which it is put in place
+        # contacts near ground and walls in time stepping, their numbers (near); how fast each may close in the
+        # step (closes) [m/s]; its coefficient of friction (rubs); displacement away from its surface by which it
+        # was put in place, as an impulse (moved) [m]; what a unit impulse along each of its axes gives to its
+        # velocity along the same axis (gives) [-]; its impulse for a unit of mass (shove) [m/s]
         *whole("near", MOST_NEAR),
         *fields("closes rubs moved", MOST_NEAR),
         *fields("gives shove", MOST_NEAR, 3),
@@ -108,7 +123,7 @@ CASE = np.dtype(
 
 @kernel
 def at_wall(s):
-    """Whether a closed point is at a wall."""
+    """Whether a closed point is a corner at a wall."""
     found = False
     for k in range(s.count):
         found = found or s.closed[k] >= solid.WALLS
@@ -117,7 +132,7 @@ def at_wall(s):
 
 @kernel
 def kind_of(s):
-    """Kind of a mode."""
+    """Kind of a mode: REST, FLIGHT, PIVOT, SLIDER, HINGE or GENERAL, which is all that touches a wall too."""
     n = s.count
     if s.rests:
         return REST
@@ -134,7 +149,7 @@ def kind_of(s):
 
 @kernel
 def effective_gravity_at(field, tau):
-    """Effective gravity in the world."""
+    """Effective gravity in the world [m/s²] at the time tau in an interval [s]; ``field`` as in CASE."""
     return (
         field[0] + field[3] * tau,
         field[1] + field[4] * tau,
@@ -144,22 +159,26 @@ def effective_gravity_at(field, tau):
 
 @kernel
 def stretch_of(body, y, rows, i):
-    """Direction in the world from a tie's knot to its anchor, its length, and how fast that grows."""
+    """Unit vector in the world from tie i's knot to its anchor, its length [m], and how fast that grows [m/s]."""
     p = (body.knot[i, 0], body.knot[i, 1], body.knot[i, 2])
     at, u = to_world(rows, p), solid.point_velocity(y, rows, p)
-    x, z, up = (
+    east, north, up = (
         body.anchor[i, 0] - y[0] - at[0],
         body.anchor[i, 1] - y[1] - at[1],
         body.anchor[i, 2] - y[2] - at[2],
     )
-    length = math.sqrt(x * x + z * z + up * up)
-    way = (x / length, z / length, up / length)
+    length = math.sqrt(east * east + north * north + up * up)
+    way = (east / length, north / length, up / length)
     return way, length, -dot(way, u)
 
 
 @kernel
 def tie_margin(body, length, rate, i):
-    """How far a tie is from its other state [m]: positive where it pulls, or a bracket pushes."""
+    """How far tie i is from its other state, taut or slack [m]: positive where it pulls, or a bracket pushes.
+
+    ``length`` and ``rate`` are those of :func:`stretch_of`. It is taut if it is long and its force, k long + c
+    rate, does not push; of a bracket also where it is short and pushes.
+    """
     k, c = body.stiffness[i], body.damping[i]
     long = length - body.natural[i]
     pulls = min(long, long + c * rate / k)
@@ -170,7 +189,7 @@ def tie_margin(body, length, rate, i):
 
 @kernel
 def tie_force(body, length, rate, i):
-    """Force with which a tie pulls, for a unit of mass; negative of a bracket that pushes."""
+    """Force with which tie i pulls [N/kg]; negative of a bracket that pushes (``docs/holding.md``)."""
     k, c = body.stiffness[i], body.damping[i]
     if length > body.natural[i]:
         return max(k * (length - body.natural[i]) + c * rate, 0.0)
@@ -181,7 +200,7 @@ def tie_force(body, length, rate, i):
 
 @kernel
 def fill_tie_forces(body, y, rows, s):
-    """Fill in force and moment of the ties that have not broken, in the body."""
+    """Fill s.pulled [N/kg] and s.twisted [N m/kg], force and moment of the whole ties, in the body."""
     for k in range(3):
         s.pulled[k] = s.twisted[k] = 0.0
     for i in range(body.constraints):
@@ -197,7 +216,7 @@ def fill_tie_forces(body, y, rows, s):
 
 @kernel
 def push_along(body, rows, i, axis):
-    """Unit impulse along an axis of contact i, as the body sees it."""
+    """Unit impulse along an axis of contact i, in the body: axes 0 and 1 along its surface, 2 away from it."""
     if i < solid.WALLS:
         return rows[axis]
     unit = (
@@ -210,7 +229,7 @@ def push_along(body, rows, i, axis):
 
 @kernel
 def response(body, rows, p, q, push):
-    """Velocity in the world of point p after an impulse, as the body sees it, at point q."""
+    """Velocity in the world of point p after an impulse ``push`` at point q, all in the body (equation 10)."""
     turn = times(body.inverse, cross(q, push))
     return to_world(rows, plus(push, cross(turn, p)))
 
@@ -220,7 +239,7 @@ def twist_of(body, s):
     """Part of its distance from the centre at which the friction of a closed point acts; 1 but on a flat face.
 
     Pressed evenly, a face that spins is held by µ N times the mean distance of its points from the centre
-    (``docs/space.md``), which is less than the distance of the points that carry it here.
+    (``docs/space.md``, equation 6), which is less than the distance of the points that carry it here.
     """
     if s.count < 3 or at_wall(s):
         return 1.0
@@ -233,10 +252,7 @@ def twist_of(body, s):
 
 @kernel
 def slip_of(body, y, rows, k, s):
-    """Velocity of where friction acts on the closed point number k: two along its contact, one away from it [m/s].
-
-    ``rows`` are the world's axes as the body sees them; ``rows[2]`` is the upward one.
-    """
+    """Velocity of where friction acts on the k-th closed point: two along its contact, one away from it [m/s]."""
     p = solid.arm(body, rows[2], s.closed[k])
     # friction of a flat face acts nearer its centre, at the mean distance of its points
     if s.count >= 3:
@@ -246,9 +262,11 @@ def slip_of(body, y, rows, k, s):
 
 @kernel
 def fill_delassus(body, rows, which, n, delassus, twist=1.0):
-    """Fill in what impulses at the contacts do to their velocities, along each contact and across it.
+    """Fill the Delassus matrix W of n contacts ``which``, (3 n, 3 n): velocities u = W P by impulses P.
 
-    Along the ground they act, and velocities are, at the part ``twist`` of the contacts' distance from the centre.
+    Row 3 i + k is the component k of contact i, column 3 j + l the impulse along the axis l of contact j
+    (``docs/space.md``, equation 10). What is along the ground acts, and is looked at, at the part ``twist`` of a
+    contact's distance from the base's centre; what is away from it at the contact itself.
     """
     up = rows[2]
     for j in range(n):
@@ -262,8 +280,8 @@ def fill_delassus(body, rows, which, n, delassus, twist=1.0):
                 u = response(body, rows, p, at, push)
                 if twist != 1.0:
                     p = solid.towards_centre(body, p, twist)
-                    flat = response(body, rows, p, at, push)
-                    u = (flat[0], flat[1], u[2])
+                    along = response(body, rows, p, at, push)
+                    u = (along[0], along[1], u[2])
                 u = solid.in_frame(body, which[i], u)
                 for k in range(3):
                     delassus[3 * i + k, 3 * j + axis] = u[k]
@@ -271,7 +289,7 @@ def fill_delassus(body, rows, which, n, delassus, twist=1.0):
 
 @kernel
 def fill_velocities(body, y, rows, which, n, out, twist=1.0):
-    """Fill in the velocities of n contacts ``which``: for each two along it and one away from it [m/s], (3 n,).
+    """Fill ``out``, (3 n,), with the velocities of n contacts ``which``: two along each, one away from it [m/s].
 
     Those along the ground are at the part ``twist`` of a contact's distance from the centre, where friction of a
     face that turns about the vertical acts.
@@ -287,7 +305,11 @@ def fill_velocities(body, y, rows, which, n, out, twist=1.0):
 
 @kernel
 def fill_accelerations(body, y, rows, weight, s, twist):
-    """Fill in the accelerations of closed points without contact forces, with ``weight`` as the body sees it."""
+    """Fill s.free, (3 n,), with accelerations of the closed points without contact forces [m/s²].
+
+    Of each two are along it, one away; those along it at the part ``twist`` of its distance from the base's
+    centre, which is 1 beside walls. ``weight`` is in the body.
+    """
     omega, out, which = solid.omega_of(y), s.free, s.closed
     spin = solid.free_spin(body, omega, twist_by_ties(s))
     for i in range(s.count):
@@ -305,7 +327,7 @@ def fill_accelerations(body, y, rows, weight, s, twist):
 
 @kernel
 def slip_direction(s, i, u, v):
-    """Direction of slip of contact i whose velocity in the plan is (u, v)."""
+    """Direction of slip of the i-th closed contact with the velocity (u, v) [m/s]; if slow, the one noted."""
     speed = norm(u, v)
     if speed > SLIP_FLOOR:
         return u / speed, v / speed
@@ -314,13 +336,13 @@ def slip_direction(s, i, u, v):
 
 @kernel
 def twist_by_ties(s):
-    """Moment of the ties in the body, for a unit of mass."""
+    """Moment of the ties about the centre of mass, in the body [N m/kg]."""
     return (s.twisted[0], s.twisted[1], s.twisted[2])
 
 
 @kernel
 def load_on(body, y, rows, gravity, s):
-    """Effective gravity and the force of the ties, in the body, for a unit of mass; their moment is kept."""
+    """Effective gravity and the force of the ties, in the body [N/kg]; the ties' part is kept in ``s``."""
     fill_tie_forces(body, y, rows, s)
     weight = to_body(rows, gravity)
     return plus(weight, (s.pulled[0], s.pulled[1], s.pulled[2]))
@@ -328,9 +350,10 @@ def load_on(body, y, rows, gravity, s):
 
 @kernel
 def pivot_acceleration(body, p, turned, omega, weight, i, s):
-    """Angular acceleration about a sticking point, the force at it, both in the body.
+    """Angular acceleration about a sticking point i [rad/s²] and the force at it [N/kg] (equation 4).
 
-    ``p`` and ``turned`` are the point's arm and the part of its acceleration that comes from no acceleration.
+    All is in the body. ``p`` is the point's arm and ``turned`` its acceleration without accelerations, β. About a
+    vertex the inertia is known; about the lowest point of a rim it changes as the rim rolls.
     """
     load = plus(turned, weight)
     if i == solid.rim_contact(body):
@@ -347,7 +370,10 @@ def pivot_acceleration(body, p, turned, omega, weight, i, s):
 
 @kernel
 def turn_about(body, p, moment):
-    """Angular velocity (or acceleration) that a moment about the body's point p gives it if that point is held."""
+    """Angular velocity (or acceleration) that a moment about the body's point p gives it if that point is held.
+
+    It is the solution of [J + |p|² 1 - p pᵀ] ω = moment; all in the body, for a unit of mass.
+    """
     m = body.inertia
     square = dot(p, p)
     return solve_symmetric(
@@ -358,10 +384,11 @@ def turn_about(body, p, moment):
 
 @kernel
 def stop_point(body, up, i, load, momentum):
-    """Angular velocity with which a body leaves an impact that stops point i, and the impulse, both in the body.
+    """Angular velocity after an impact that stops point i, and the impulse, both in the body (equation 11).
 
-    ``load`` is the velocity of the point but for rotation, and ``momentum`` the angular momentum about the centre
-    of mass, before; or accelerations and the moment.
+    ``load`` is the velocity of the point but for rotation [m/s], and ``momentum`` the angular momentum about the
+    centre of mass [m²/s], before; or accelerations and the moment. Of a vertex the inverse of its inertia is
+    known.
     """
     p = solid.arm(body, up, i)
     moment = minus(momentum, cross(p, load))
@@ -374,15 +401,17 @@ def stop_point(body, up, i, load, momentum):
 
 @kernel
 def stop_edge(body, up, i, j, first, second, momentum, small):
-    """Angular velocity after an impact that stops points i and j, and its impulse.
+    """Angular velocity after an impact that stops points i and j, and its impulse (equation 12).
 
-    Returned are also the impulse at j but for its part along the edge, the edge's direction, and whether both can
-    be stopped.  ``first`` and ``second`` are the loads of :func:`stop_point`: velocities at i and j but for those
-    of rotation. With ω after the impact, the edge L e from i to j and the inertia J about i,
+    ``first`` and ``second`` are the loads of :func:`stop_point`, of i and j: velocities but for those of rotation.
+    With ω after the impact, the edge L e from i to j and the inertia J about i,
 
     - both stop if (first - second)·e = 0 and ω = e × (first - second) / L + σ e;
     - σ follows from the moment about the edge, e·J ω = e·(momentum - p × first);
     - the impulse is -(ω × p + first), and what turns the body otherwise is that at j, (J ω - moment) × e / L.
+
+    Returned are, in the body: the angular velocity [rad/s]; the impulse of both [m/s]; that at j but for its part
+    along the edge; the edge's unit vector e; and whether both can be stopped, up to ``small`` [m/s].
     """
     p, q = solid.arm(body, up, i), solid.arm(body, up, j)
     edge = minus(q, p)
@@ -402,12 +431,12 @@ def stop_edge(body, up, i, j, first, second, momentum, small):
 
 @kernel
 def slide_on_one_point(body, y, rows, omega, free_spin, weight, s):
-    """Force at the one closed contact, which slides, with its arm and its velocity (``docs/space.md``, 4).
+    """Force at the one closed contact, which slides, with its arm and its velocity ("All others").
 
-    Friction is kinetic, against the slip, and the normal force is the one that keeps the contact from
-    accelerating upwards.  In: the rows of the attitude, the angular velocity, and the angular acceleration and the
-    effective gravity without the force, both in the body.  Out: the force [N/kg] and the arm [m] in the body, the
-    velocity of the point in axes of the ground [m/s].
+    Friction is kinetic, against the slip, and the normal force is the one that keeps the contact from accelerating
+    upwards. In: the rows of the attitude, the angular velocity, and the angular acceleration and the effective
+    gravity without the force, both in the body. Out: the force [N/kg] and the arm [m] in the body, the velocity of
+    the point in axes of the ground [m/s].
     """
     i = s.closed[0]
     up = rows[2]
@@ -425,7 +454,11 @@ def slide_on_one_point(body, y, rows, omega, free_spin, weight, s):
 
 @kernel
 def hinge_acceleration(body, rows, omega, weight, i, j, s):
-    """Angular acceleration about the edge from point i to j, force at both ends, and the edge's direction."""
+    """Angular acceleration about the edge from point i to j, which both stick, and the force, in the body.
+
+    The acceleration [rad/s²] is the part of equation 4 along the edge's unit vector e; the force [N/kg] is that of
+    both ends together; returned is e too.
+    """
     p, q = solid.arm(body, rows[2], i), solid.arm(body, rows[2], j)
     edge = minus(q, p)
     length = math.sqrt(dot(edge, edge))
@@ -440,7 +473,10 @@ def hinge_acceleration(body, rows, omega, weight, i, j, s):
 
 @kernel
 def split_force(body, rows, omega, alpha, force, e, s):
-    """Share the force of a hinge between its ends so that both hold if they can; world components."""
+    """Fill s.lam with the forces of a hinge at its two ends [N/kg], in axes of the ground (equation 13).
+
+    ``alpha``, ``force`` and ``e`` are what :func:`hinge_acceleration` returned.
+    """
     p, q = (
         solid.arm(body, rows[2], s.closed[0]),
         solid.arm(body, rows[2], s.closed[1]),
@@ -464,13 +500,18 @@ def split_force(body, rows, omega, alpha, force, e, s):
 
 @kernel
 def in_set(mask, i):
-    """Whether contact i belongs to a set."""
+    """Whether (1 or 0) contact i belongs to a set, whose contacts are bits of the mask."""
     return (mask >> i) & 1
 
 
 @kernel
 def stick_together(s, n, mask, soft):
-    """Solve for impulses at which all of a set stick (or slide the given way); the others get none."""
+    """Solve for the impulses at which all of a set stick, or slide the given way; fill s.impulse, others 0.
+
+    Unknowns are three of a contact that sticks, and the normal one of a contact that slides, with which its
+    friction goes. They are solved for as those of soft contacts (``docs/space.md``, equation 15), ``soft`` the
+    softness. Returned is whether there is a solution.
+    """
     size = 0
     for j in range(n):
         if not in_set(mask, j):
@@ -480,6 +521,7 @@ def stick_together(s, n, mask, soft):
             for i in range(n):
                 if not in_set(mask, i):
                     continue
+                # conditions of contact i: no velocity, or, where it slides, none away from its surface
                 for k in range(2 if s.given[i] else 0, 3):
                     value = s.delassus[3 * i + k, 3 * j + axis]
                     if s.given[j]:
@@ -495,7 +537,7 @@ def stick_together(s, n, mask, soft):
         s.unknown[i] = 0.0
     done = factor(s.matrix, s.order, size)
     # what the softness shifts one more pass with it as a reference removes
-    for _ in range(3 if done else 0):
+    for _ in range(PASSES if done else 0):
         for i in range(size):
             s.vector[i] = s.right[i] + soft * s.unknown[i]
         substitute(s.matrix, s.order, size, s.vector)
@@ -507,14 +549,17 @@ def stick_together(s, n, mask, soft):
 
 @kernel
 def push_by_two(s, sticks, slides, way, grip):
-    """Solve for the impulse at which one contact sticks, beside one that slides a given way.
+    """Impulse at which contact ``sticks`` sticks, beside contact ``slides`` that slides along ``way``.
 
-    Returned is also the normal impulse at the second, and what goes with a unit of it by friction.
+    With the coefficient ``grip`` this is equation 14 (``docs/space.md``), with contact 1 that sticks. Returned are
+    P_1, (3,); the normal impulse N at the other; and f, (3,), with P_2 = N f.
     """
     w, a, b = s.delassus, 3 * sticks, 3 * slides
     unit = (-grip * way[0], -grip * way[1], 1.0)
+    # P_1 = without + N by_unit
     without = stop_at(w, a, (s.free[a], s.free[a + 1], s.free[a + 2]))
     by_unit = stop_at(w, a, effect(w, a, b, unit))
+    # velocity of the other away from its surface, without N and by a unit of it
     left = s.free[b + 2] + dot(row_of(w, b + 2, a), without)
     gives = dot(row_of(w, b + 2, b), unit) + dot(row_of(w, b + 2, a), by_unit)
     normal = -left / gives
@@ -523,13 +568,13 @@ def push_by_two(s, sticks, slides, way, grip):
 
 @kernel
 def row_of(w, i, b):
-    """Return what impulses at the contact whose first row is b do to one velocity."""
+    """Entries i, b to b + 2 of W: what impulses at the contact whose first row is b do to the velocity i."""
     return (w[i, b], w[i, b + 1], w[i, b + 2])
 
 
 @kernel
 def effect(w, a, b, push):
-    """Velocity of the contact whose first row is a, by an impulse at that of row b."""
+    """Velocity of the contact whose first row in W is a, by an impulse ``push`` at that whose first row is b."""
     return (
         dot(row_of(w, a, b), push),
         dot(row_of(w, a + 1, b), push),
@@ -539,7 +584,7 @@ def effect(w, a, b, push):
 
 @kernel
 def stop_at(w, a, velocity):
-    """Impulse at the contact whose first row is a that takes a velocity of it away."""
+    """Impulse at the contact whose first row in W is a that takes a velocity of it away: -W_aa⁻¹ velocity."""
     return solve_symmetric(
         w[a, a], w[a, a + 1], w[a, a + 2], w[a + 1, a + 1], w[a + 1, a + 2],
         w[a + 2, a + 2], scaled(-1.0, velocity),
@@ -548,7 +593,7 @@ def stop_at(w, a, velocity):
 
 @kernel
 def spread(s, n, mask):
-    """Write the unknowns of a set to the impulses."""
+    """Write s.unknown, the unknowns of a set in :func:`stick_together`, to s.impulse, three a contact."""
     row = 0
     for i in range(n):
         x = y = z = 0.0
@@ -564,7 +609,12 @@ def spread(s, n, mask):
 
 @kernel
 def solve_general(body, y, rows, n, rubs, s):
-    """Solve for the forces (or impulses, without friction) that undo s.free in a mode; fill ``lam``."""
+    """Fill s.lam with the forces [N/kg] (or impulses) of the n closed contacts that undo s.free in a mode.
+
+    What sticks is stopped in all directions; of what slides the normal velocity alone, with kinetic friction
+    against its slip if it ``rubs`` (``docs/space.md``, "All others"). s.free has the accelerations (or velocities)
+    without them.
+    """
     fill_delassus(body, rows, s.closed, n, s.delassus, twist_of(body, s))
     for i in range(n):
         u = slip_of(body, y, rows, i, s)
@@ -574,22 +624,30 @@ def solve_general(body, y, rows, n, rubs, s):
             s.friction[i] = solid.kinetic_of(body, s.closed[i])
     # a wall may hold what the ground holds already, which leaves nothing to divide by
     on_ground = max(s.closed[0], s.closed[1]) < solid.WALLS
-    if n == 2 and on_ground and s.slides[0] + s.slides[1] == SLIDES:
-        slides = 0 if s.slides[0] == SLIDES else 1
-        way = (s.way[slides, 0], s.way[slides, 1])
-        push, normal, unit = push_by_two(s, 1 - slides, slides, way, s.friction[slides])
-        for k in range(3):
-            s.lam[1 - slides, k], s.lam[slides, k] = push[k], normal * unit[k]
+    one_slides = s.slides[0] != s.slides[1]
+    if n == 2 and on_ground and one_slides:
+        hold_beside_slider(s)
         return
-    stick_together(s, n, (1 << n) - 1, SOFTNESS * largest_compliance(s, n))
+    all_contacts = (1 << n) - 1
+    stick_together(s, n, all_contacts, SOFTNESS * largest_compliance(s, n))
     for i in range(n):
         for k in range(3):
             s.lam[i, k] = s.impulse[3 * i + k]
 
 
 @kernel
+def hold_beside_slider(s):
+    """Fill s.lam of two contacts of which one slides, an edge as in most of these modes, in closed form."""
+    slides = 0 if s.slides[0] == SLIDES else 1
+    way = (s.way[slides, 0], s.way[slides, 1])
+    push, normal, unit = push_by_two(s, 1 - slides, slides, way, s.friction[slides])
+    for k in range(3):
+        s.lam[1 - slides, k], s.lam[slides, k] = push[k], normal * unit[k]
+
+
+@kernel
 def largest_compliance(s, n):
-    """Largest diagonal entry of the Delassus matrix of n contacts."""
+    """Largest diagonal entry of the Delassus matrix of n contacts [-]: the most that a unit impulse gives."""
     largest = 0.0
     for i in range(3 * n):
         largest = max(largest, s.delassus[i, i])
@@ -598,10 +656,11 @@ def largest_compliance(s, n):
 
 @kernel
 def rates(body, tau, y, dy, s, split=True):
-    """Fill in dy/dt, and the contact forces in world components; of a hinge's ends only if its force is ``split``.
+    """Fill ``dy``, (15,), with dy/dt, and s.lam with the contact forces along and away from each contact [N/kg].
 
-    ``s.field`` holds the effective gravity at the beginning of the interval, its rate, and the gravity of a ground
-    at rest; ``tau`` counts from there.
+    ``tau`` is the time in the interval [s], at whose beginning s.field holds the effective gravity. Forces of a
+    hinge's two ends are filled in only if its force is ``split``. Each kind of mode has its own equation: 4, its
+    part along an edge, or the linear system of all others (``docs/space.md``).
     """
     rows = rotation(y)
     omega = solid.omega_of(y)
@@ -649,20 +708,26 @@ def rates(body, tau, y, dy, s, split=True):
                 acceleration = plus(acceleration, push)
                 alpha = plus(alpha, turned_by(body, rows, s.closed[i], push, twist))
     fill_rates(y, omega, alpha, acceleration, dy)
-    dy[13] = load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[6]) * y[9]
-    dy[13] += dot(twist_by_ties(s), omega)
-    dy[14] = lost
+    dy[solid.WORK] = (
+        load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[GRAVITY]) * y[9]
+    )
+    dy[solid.WORK] += dot(twist_by_ties(s), omega)
+    dy[solid.FRICTION] = lost
 
 
 @kernel
 def fill_rates(y, omega, alpha, acceleration, dy):
-    """Fill in the rates of position, attitude and velocities."""
-    w, x, i, z = y[3], y[4], y[5], y[6]
+    """Fill in the rates of a state: of place and attitude from its velocities, of velocities as given.
+
+    The quaternion q changes by q ∘ ω/2, ``omega`` in the body [rad/s]. ``acceleration`` is that of the centre of
+    mass in the world [m/s²], ``alpha`` the angular one in the body [rad/s²].
+    """
+    qw, qx, qy, qz = y[3], y[4], y[5], y[6]
     dy[0], dy[1], dy[2] = y[7], y[8], y[9]
-    dy[3] = -0.5 * (x * omega[0] + i * omega[1] + z * omega[2])
-    dy[4] = 0.5 * (w * omega[0] + i * omega[2] - z * omega[1])
-    dy[5] = 0.5 * (w * omega[1] + z * omega[0] - x * omega[2])
-    dy[6] = 0.5 * (w * omega[2] + x * omega[1] - i * omega[0])
+    dy[3] = -0.5 * (qx * omega[0] + qy * omega[1] + qz * omega[2])
+    dy[4] = 0.5 * (qw * omega[0] + qy * omega[2] - qz * omega[1])
+    dy[5] = 0.5 * (qw * omega[1] + qz * omega[0] - qx * omega[2])
+    dy[6] = 0.5 * (qw * omega[2] + qx * omega[1] - qy * omega[0])
     for k in range(3):
         dy[7 + k] = acceleration[k]
         dy[10 + k] = alpha[k]
@@ -670,7 +735,10 @@ def fill_rates(y, omega, alpha, acceleration, dy):
 
 @kernel
 def turned_by(body, rows, i, push, twist):
-    """Angular acceleration by a force, in axes of the ground, at contact i."""
+    """Angular acceleration in the body [rad/s²] by a force ``push`` at contact i, in axes of the ground [N/kg].
+
+    Its horizontal part acts at the part ``twist`` of the contact's distance from the base's centre.
+    """
     p = solid.arm(body, rows[2], i)
     if twist == 1.0:
         return times(body.inverse, cross(p, to_body(rows, push)))
@@ -682,7 +750,7 @@ def turned_by(body, rows, i, push, twist):
 
 @kernel
 def push_at(body, y, rows, i, impulse, twist=1.0):
-    """Change the velocities in ``y`` by an impulse for a unit of mass, along contact i and across it."""
+    """Change the velocities in ``y`` by an impulse [m/s]: two components along contact i, one away from it."""
     impulse = solid.from_frame(body, i, impulse)
     turned = turned_by(body, rows, i, impulse, twist)
     for k in range(3):

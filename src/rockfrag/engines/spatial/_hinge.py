@@ -7,7 +7,7 @@ turns by in the step obeys
     I ϑ'' = e·(d × (w + r t)) cos ϑ + [(d·e) e - d]·(w + r t) sin ϑ
 
 In: a state and a mode with two such contacts. Out: the state at the end of a step, the forces there and the error.
-Theory: ``docs/space.md``, "Two that stick".
+Theory: ``docs/space.md``, equations 8, 13 and 22.
 """
 
 import math
@@ -33,7 +33,11 @@ ORDER = forces.HINGE_ORDER
 
 @kernel
 def attempt(body, tau, h, y, s):
-    """Step from y to s.new, with the forces at both ends in s.lam; return the estimate of the error."""
+    """Step from y to s.new, with the forces at both ends in s.lam; return the estimate of the error [rad/s].
+
+    The error is the last term of the series of the angular velocity. ``tau`` is the time in the interval, ``h``
+    the step [s].
+    """
     rows = rotation(y)
     p, q = solid.arm(body, rows[2], s.closed[0]), solid.arm(body, rows[2], s.closed[1])
     edge = minus(q, p)
@@ -42,7 +46,7 @@ def attempt(body, tau, h, y, s):
     field = s.field
     weight = to_body(rows, forces.effective_gravity_at(field, tau))
     rate = scaled(h, to_body(rows, (field[3], field[4], field[5])))
-    # moments about the edge, upright and after a quarter of a turn
+    # arms about the edge, as it is and after a quarter of a turn: d × e and (d·e) e - d of equation 8, with d = -p
     upright = cross(p, e)
     turned = minus(p, scaled(dot(p, e), e))
     scale = h * h / inertia
@@ -54,7 +58,7 @@ def attempt(body, tau, h, y, s):
     )
     angle, speed, work = sums(s)
     write_state(body, y, e, p, (angle, speed / h), s)
-    lifted = s.field[6] * (s.new[2] - y[2])
+    lifted = s.field[forces.GRAVITY] * (s.new[2] - y[2])
     s.new[solid.WORK] = y[solid.WORK] + inertia * work / (h * h) + lifted
     end_forces(body, tau + h, s)
     return abs(s.angle[ORDER]) * ORDER / h
@@ -86,7 +90,7 @@ def fill_series(s, speed, moment, growth):
 
 @kernel
 def sums(s):
-    """Angle and its rate at the end of a step, and the work of the moment, over the inertia."""
+    """Angle and its rate at the end of a step [rad], and the work of the moment over the inertia [rad²]."""
     angle = s.angle
     turned, speed, work = 0.0, 0.0, 0.0
     for k in range(ORDER, 0, -1):
@@ -129,7 +133,7 @@ def write_state(body, y, e, p, turned, s):
 
 @kernel
 def end_forces(body, tau, s):
-    """Fill in the forces at the ends of the edge in the state s.new."""
+    """Fill s.lam with the forces at the ends of the edge in the state s.new, at ``tau`` in the interval."""
     rows, omega = rotation(s.new), solid.omega_of(s.new)
     weight = to_body(rows, forces.effective_gravity_at(s.field, tau))
     i, j = s.closed[0], s.closed[1]

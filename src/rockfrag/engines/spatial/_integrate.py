@@ -2,7 +2,14 @@
 
 In: a record ``BODY``, accelerations of shape (n, 3) [m/s²], scales, a state to begin with. Out: outcomes and
 counters (their places are named constants here), the state at the end and, if wanted, the history. Theory:
-``docs/space.md``, "Steps".
+``docs/space.md``, "Steps" and "Derivations", equations 18 to 25.
+
+An interval is the time between two samples of the motion.
+
+- ``y``: the state, changed in place; ``s``: record ``CASE``, with the mode; ``out``: the outcome, shape (OUTCOME,)
+- ``tau``: time in an interval, ``dt`` its length, ``h`` a step [s]; ``rows``: the world's axes in the body
+- ``gravity``: effective gravity in the world, equation 1; ``g``: that on ground at rest [m/s²]
+- ``cut``: energy over rest at which a body rests, over that which a fall takes (``body.barrier``) [-]
 """
 
 import math
@@ -22,8 +29,21 @@ RIM_START = 1e-7
 # tilt below which a round base passes through flat in closed form [rad]
 FLAT_PASS = 1e-8
 SHORTEST = 1e-11  # step [s]
+# part of an interval that is rounding [-]; of gravity, by which a margin of rest is none [-]
+NO_TIME, NO_MARGIN = 1e-12, 1e-9
+# steps of no length in a row after which one contact is changed outright, and after which a step is forced
+SOON_STUCK, STUCK = 3, 100
+# velocity that closes contacts at most, however often it is doubled [m/s]
+MOST_CLOSE = 1e-3
+# step above which a contact is looked for that touched inside of it alone [s]; first step after a near-flat pass
+# [s]
+LOOKS_INSIDE, AFTER_PASS = 1e-7, 1e-9
+# step that is forced at most [s]; tilt below which a wobble that cannot be followed lies flat [rad]
+FORCED, NEXT_TO_FLAT = 1e-6, 1e-3
 # time in which rates stay: its square times an acceleration is less than TOUCH [s]
 BRIEF = 1e-6
+# how many contacts take part in an impact at least: in a landing, and in one that no collision brings about
+LANDING, NO_COLLISION = 0, 1
 # contact events in one interval after which the velocity that closes contacts is doubled
 MANY = 40
 # steps in one interval after which errors of COARSE [m, m/s, rad/s] are allowed to what slides: slip that hardly
@@ -50,7 +70,9 @@ STILL = 20
 # intervals that a body at rest passes at once where the ground cannot move it
 WINDOW = 16
 
-OUTCOME = 18 + 4 * solid.HOLDERS
+# outcomes of each constraint and of the bond: hits, largest impulse and force, instant of breaking
+OF_HOLDER = 4
+OUTCOME = 18 + OF_HOLDER * solid.HOLDERS
 (
     FELL, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, WALK_X, WALK_Y, TURN, STEPS,
     LOST, ENERGY_BALANCE, CERTAIN_TIME, CONTACT_EVENTS, GAINED,
@@ -59,28 +81,38 @@ OUTCOME = 18 + 4 * solid.HOLDERS
 """Outcomes; from HELD on four of each constraint and the bond: hits, impulse, force, instant of breaking."""
 
 COLUMNS = 17
+TURNED, COUNT, FIRST, SECOND = range(solid.WORK, COLUMNS)
 """Columns of a history: y[0:13], turn about the vertical, number of closed points, and the first two of them."""
+
+RESTS = 99  # stands for the number of closed points of a body at rest, which are not looked at
 
 
 @kernel
 def set_field(field, acceleration, k, scale, dt, g):
-    """Set the effective gravity of interval k; the ground is at rest one sample after the last."""
+    """Fill s.field for interval k: effective gravity at its beginning [m/s²], its rate [m/s³], and g.
+
+    The ground is at rest one sample after the last.
+    """
     last = acceleration.shape[0] - 1
     for i in range(3):
         now = scale * acceleration[k, i] if k <= last else 0.0
         then = scale * acceleration[k + 1, i] if k < last else 0.0
         field[i], field[3 + i] = -now, -(then - now) / dt
     field[2] -= g
-    field[6] = g
+    field[forces.GRAVITY] = g
 
 
 @kernel
 def rest_ends(body, y, s, tau, dt):
-    """When the ground no longer carries the body at rest, -1 if it does: concave margins need only ends."""
+    """Time in the interval when the ground no longer carries the body at rest [s], -1 if it does to the end.
+
+    The margin of rest is a concave function of time within an interval, so that it is enough to look at both ends;
+    its zero is found by false position.
+    """
     field = s.field
     gravity = forces.effective_gravity_at(field, dt)
     level = algebra.norm(gravity[0], gravity[1])
-    upright = level * body.height < -gravity[2] * body.nearest * (1 - 1e-9)
+    upright = level * body.height < -gravity[2] * body.nearest * (1 - NO_MARGIN)
     if upright and level < -body.static * gravity[2] and not s.bonded:
         # a flat body rests whichever way it is pulled
         return -1.0
@@ -108,12 +140,16 @@ def rest_ends(body, y, s, tau, dt):
 
 @kernel
 def leave_rest(body, y, tau, s):
-    """Choose how the body leaves rest: slides, or tips over an edge, a vertex or the rim."""
+    """Choose how the body leaves rest at ``tau``, and write the mode to ``s``: it slides or tips.
+
+    It tips over the rim, or over each edge whose margin is gone; two edges at once leave the vertex that they
+    share.
+    """
     rows = algebra.rotation(y)
     gravity = forces.effective_gravity_at(s.field, tau)
     if body.walls:
         gravity = modes.borne_by_ground(body, y, rows, gravity)
-    small = 1e-9 * s.field[6]
+    small = NO_MARGIN * s.field[forces.GRAVITY]
     level = algebra.norm(gravity[0], gravity[1])
     s.rests = 0
     whole = modes.rest_margin(body, y, rows, gravity, s)
@@ -122,9 +158,11 @@ def leave_rest(body, y, tau, s):
         return
     if body.rim > 0:
         b = algebra.to_body(rows, (gravity[0], gravity[1], 0.0))
+        # the moment about the base's centre (equation 21), in the body
         centre = -gravity[2] / body.height
-        x, z = b[0] - centre * body.centre[0], b[1] - centre * body.centre[1]
-        start_rolling(body, y, x, z, gravity, s)
+        towards_x = b[0] - centre * body.centre[0]
+        towards_y = b[1] - centre * body.centre[1]
+        start_rolling(body, y, towards_x, towards_y, gravity, s)
         return
     s.count = 0
     last, first = -1, -1
@@ -141,7 +179,11 @@ def leave_rest(body, y, tau, s):
 
 @kernel
 def slide_or_jump(body, y, tau, s, gravity, level, jumps):
-    """Leave rest by sliding on the whole base, or, after a jump of the ground's acceleration, in any way."""
+    """Leave rest by sliding on the whole base, or, after a jump of the ground's acceleration, in any mode.
+
+    ``level`` is the horizontal part of the effective gravity [m/s²]; a ground that ``jumps`` has left the margin
+    of rest behind at once.
+    """
     if jumps and modes.choose_mode(body, tau, y, s):
         return
     n = modes.pick_feet(body, y, algebra.rotation(y), s)
@@ -154,7 +196,10 @@ def slide_or_jump(body, y, tau, s, gravity, level, jumps):
 
 @kernel
 def add_edge(body, y, rows, gravity, i, j, small, s):
-    """Close the ends of an edge that the body tips over; a vertex that two such edges share stays alone."""
+    """Close the ends of the edge from point i to j if the body tips over it; of two edges their vertex alone.
+
+    It tips where the margin is not above ``small`` [m/s²].
+    """
     if modes.edge_margin(body, y, rows, gravity, i, j) > small:
         return
     if s.count == 0:
@@ -169,14 +214,18 @@ def add_edge(body, y, rows, gravity, i, j, small, s):
 
 
 @kernel
-def start_rolling(body, y, x, z, gravity, s):
-    """Tilt a round body by RIM_START towards a direction of the base, by the work of the ground's pull."""
-    size = max(algebra.norm(x, z), 1e-300)
-    u = (x / size, z / size)
-    a, b, c = y[0], y[1], y[2]
+def start_rolling(body, y, towards_x, towards_y, gravity, s):
+    """Tilt a flat round body by RIM_START towards a direction of the base, and let it roll.
+
+    The direction (towards_x, towards_y) is in the body. What the tilt takes counts as work of the ground's motion.
+    """
+    size = max(algebra.norm(towards_x, towards_y), algebra.TINY)
+    u = (towards_x / size, towards_y / size)
+    before = (y[0], y[1], y[2])
     tilt_about(body, y, u, RIM_START)
-    lifted = (gravity[2] + s.field[6]) * (y[2] - c)
-    y[solid.WORK] += gravity[0] * (y[0] - a) + gravity[1] * (y[1] - b) + lifted
+    lifted = (gravity[2] + s.field[forces.GRAVITY]) * (y[2] - before[2])
+    moved = gravity[0] * (y[0] - before[0]) + gravity[1] * (y[1] - before[1])
+    y[solid.WORK] += moved + lifted
     s.closed[0], s.slides[0] = solid.rim_contact(body), forces.STICKS
     s.count, s.rests = 1, 0
     modes.settle(body, y, s)
@@ -184,7 +233,11 @@ def start_rolling(body, y, x, z, gravity, s):
 
 @kernel
 def tilt_about(body, y, u, tilt):
-    """Give a flat body a small tilt, with its lowest point towards u in the base, where that point was."""
+    """Give a flat body a small tilt [rad] about its lowest point, which is towards the unit vector u of the base.
+
+    That point stays where it is in the plan; the height of the centre of mass is left to what follows. The axis
+    (-u[1], u[0]) of the turn is level and across u.
+    """
     modes.lay_flat(body, y)
     p = (
         body.centre[0] + body.rim * u[0],
@@ -200,44 +253,57 @@ def tilt_about(body, y, u, tilt):
 
 @kernel
 def pass_flat(body, y, s):
-    """Let a rim pass through flat: its contact turns by a fixed angle and the body tilts up again."""
+    """Let a rim pass through flat in closed form, changing y (``docs/space.md``, "A near-flat pass", equation 20).
+
+    Its contact turns by a fixed angle, ``body.pass_turn`` rolling and ``slide_turn`` sliding [rad], and the tilt
+    rises as it sank. A body whose tilt rises already is left as it is.
+    """
     up = algebra.rotation(y)[2]
-    from_here, sine = solid.rim_direction(up)
+    from_here, tilt = solid.rim_direction(up)
     # rate of the vertical as the body sees it, towards the upright while the body sinks
     sinking = algebra.cross(up, solid.omega_of(y))
     if sinking[0] * up[0] + sinking[1] * up[1] >= 0.0:
         return
-    before = solid.energy(body, y, s.field[6])
-    angle = body.slide_turn if s.slides[0] == forces.SLIDES else body.pass_turn
-    # the way in which the contact goes round already
-    if sinking[0] * from_here[1] - sinking[1] * from_here[0] < 0:
+    gravity = s.field[forces.GRAVITY]
+    before = solid.energy(body, y, gravity)
+    slides = s.slides[0] == forces.SLIDES
+    angle = body.slide_turn if slides else body.pass_turn
+    goes_back = sinking[0] * from_here[1] - sinking[1] * from_here[0] < 0
+    if goes_back:
+        # the contact goes on round as it does already
         angle = -angle
-    d, c = sin_cos(angle)
+    sine, cosine = sin_cos(angle)
     to_there = (
-        c * from_here[0] - d * from_here[1],
-        d * from_here[0] + c * from_here[1],
+        cosine * from_here[0] - sine * from_here[1],
+        sine * from_here[0] + cosine * from_here[1],
     )
-    tilt_about(body, y, to_there, max(2 * FLAT_PASS, sine))
+    # so far that it is not below FLAT_PASS again at once
+    tilt_about(body, y, to_there, max(2 * FLAT_PASS, tilt))
     rise(body, y, to_there, algebra.norm(sinking[0], sinking[1]), s)
     # a base that is not symmetrical would gain in the new direction
-    solid.pay(body, y, solid.energy(body, y, s.field[6]) - before, s.field[6])
+    solid.pay(
+        body,
+        y,
+        solid.energy(body, y, s.field[forces.GRAVITY]) - before,
+        s.field[forces.GRAVITY],
+    )
 
 
 @kernel
 def rise(body, y, u, rate, s):
-    """Let a body that is next to flat tilt up about the rim's point towards u at a rate."""
-    y[10], y[11] = -rate * u[1], rate * u[0]
+    """Let a body that is next to flat tilt up about the rim's point towards u, at a ``rate`` [rad/s]."""
+    y[solid.SPIN], y[solid.SPIN + 1] = -rate * u[1], rate * u[0]
     if s.slides[0] == forces.SLIDES:
-        y[9] -= rising(body, y, solid.rim_contact(body))
+        y[solid.UPWARD] -= rising(body, y, solid.rim_contact(body))
     else:
         modes.settle(body, y, s)
 
 
 @kernel
 def lowest_open(body, y, s):
-    """Number of the open point that is nearest to the ground or its wall."""
+    """Number of the open contact that is nearest to the ground or its wall, at a wall of those that approach."""
     rows = algebra.rotation(y)
-    lowest, found = 1e300, 0
+    lowest, found = modes.NO_LIMIT, 0
     for i in solid.candidates(body):
         if not step.is_closed(s, i):
             height = solid.gap(body, y, rows[2], i)
@@ -253,13 +319,17 @@ def lowest_open(body, y, s):
 
 @kernel
 def rising(body, y, i):
-    """Velocity of point i away from the ground or its wall."""
+    """Velocity of contact i away from the ground or its wall [m/s]."""
     return solid.approach_of(body, y, algebra.rotation(y), i)
 
 
 @kernel
 def guess_landing(body, h, y, below, s):
-    """When in a step the point that is lowest after it lands, by the cubic through gaps and velocities."""
+    """Time in a step [s] at which the point lands that is lowest after it; its gap is ``below``, negative [m].
+
+    It is the last zero of the cubic through gaps and velocities at both ends, above + fall x + square x² + cube
+    x³, x the part of the step (``docs/space.md``, equation 23), by Newton's method.
+    """
     i = lowest_open(body, s.new, s)
     above, fall = solid.gap_of(body, y, algebra.rotation(y), i), h * rising(body, y, i)
     end = h * rising(body, s.new, i)
@@ -275,7 +345,12 @@ def guess_landing(body, h, y, below, s):
 
 @kernel
 def locate(body, tau, h, y, s):
-    """Find the first instant in a step at which a margin vanishes, with its state in s.new, and what happens."""
+    """Find the first instant in a step h at which a margin vanishes; return it, from the beginning [s], and which.
+
+    s.new gets the state there. False position (Illinois) between the last instant that is admissible and the first
+    that is not takes whole steps from y; a landing begins with :func:`guess_landing` and ends with a step of
+    Newton's.
+    """
     below, what = step.margin(body, s.new, s)
     middle = guess_landing(body, h, y, below, s) if what == modes.LANDS else 0.0
     forces.rates(body, tau, y, s.slopes[0], s)
@@ -317,7 +392,10 @@ def locate(body, tau, h, y, s):
 
 @kernel
 def stop_slips(body, y, s):
-    """Let points whose slip has ended stick, before the mode is chosen anew."""
+    """Let points whose slip has ended stick, before the mode is chosen anew, and stop what is left of it.
+
+    Slip ends at AT_REST; of several points the others stick too where theirs is below twice that.
+    """
     rows = algebra.rotation(y)
     for i in range(s.count):
         if s.slides[i] == forces.SLIDES:
@@ -330,35 +408,47 @@ def stop_slips(body, y, s):
 
 @kernel
 def rim_instead_of_feet(body, y, gravity, s):
-    """Replace the feet of a round base by its lowest point as soon as fewer than three of them carry."""
+    """Replace the feet of a round base by its lowest point as soon as fewer than three of them carry.
+
+    Feet are the four points of the rim on which it stands flat (:func:`_modes.stand_on_feet`). It tips towards
+    those that are left.
+    """
     n = s.count
     if body.rim == 0.0 or n == 0 or n > 2 or s.closed[0] == solid.rim_contact(body):
         return
-    x, z, sliding = 0.0, 0.0, forces.STICKS
+    towards_x, towards_y, sliding = 0.0, 0.0, forces.STICKS
     for i in range(n):
-        x += body.points[s.closed[i], 0] - body.centre[0]
-        z += body.points[s.closed[i], 1] - body.centre[1]
+        towards_x += body.points[s.closed[i], 0] - body.centre[0]
+        towards_y += body.points[s.closed[i], 1] - body.centre[1]
         sliding = max(sliding, s.slides[i])
-    tip_over_rim(body, y, x, z, sliding, gravity, s)
+    tip_over_rim(body, y, towards_x, towards_y, sliding, gravity, s)
 
 
 @kernel
-def tip_over_rim(body, y, x, z, sliding, gravity, s):
-    """Tilt a flat body towards a direction of the base, with the velocities that it has if it slides."""
+def tip_over_rim(body, y, towards_x, towards_y, sliding, gravity, s):
+    """Tilt a flat body towards the direction (towards_x, towards_y) of the base; let it roll or slide.
+
+    ``sliding`` is STICKS or SLIDES; a body that slides keeps its velocities. Energy that this gains is paid back.
+    """
     omega = solid.omega_of(y)
     velocity = (y[7], y[8], y[9])
-    before = solid.balance(body, y, s.field[6])
-    start_rolling(body, y, x, z, gravity, s)
+    before = solid.balance(body, y, s.field[forces.GRAVITY])
+    start_rolling(body, y, towards_x, towards_y, gravity, s)
     if sliding == forces.SLIDES:
         s.slides[0] = forces.SLIDES
         y[10], y[11], y[12] = omega
         y[7], y[8], y[9] = velocity
-    solid.pay(body, y, solid.balance(body, y, s.field[6]) - before, s.field[6])
+    solid.pay(
+        body,
+        y,
+        solid.balance(body, y, s.field[forces.GRAVITY]) - before,
+        s.field[forces.GRAVITY],
+    )
 
 
 @kernel
 def slides_any(s):
-    """Whether a closed point slides."""
+    """Whether any closed point slides."""
     found = False
     for i in range(s.count):
         found = found or s.slides[i] == forces.SLIDES
@@ -369,13 +459,12 @@ def slides_any(s):
 def rattle_ends(body, left, s):
     """Whether a polygon with so much energy left [J/kg] rattles to rest before the ground could lift it.
 
-    A swing of energy E lasts 2 √(2 E J) / M about an edge, where M is what the ground leaves of the moment that
-    rights the body; the next ones are shorter by the ratio 1 - 2 b²/J each (Housner 1963), all together
-    1 / (2 b²/J) times as long.
+    A rattle lasts as long as equation 19 (``docs/space.md``) says, with what the strongest ground of the next
+    intervals, s.soon, leaves of the moment that rights the body. That ground may neither tip it nor make it slide.
     """
     if body.rim > 0.0 or left > RATTLE * body.barrier:
         return False
-    weight = s.field[6] - s.soon[1]
+    weight = s.field[forces.GRAVITY] - s.soon[1]
     rights = weight * body.nearest - s.soon[0] * body.height
     if rights <= 0.0 or s.soon[0] >= body.static * weight:
         return False
@@ -388,7 +477,10 @@ def rattle_ends(body, left, s):
 
 @kernel
 def note_soon(s, peaks, k, scale, dt):
-    """Note how strongly the ground moves in the next intervals at most."""
+    """Fill s.soon: largest horizontal and vertical acceleration soon [m/s²], and how long that is [s].
+
+    ``peaks`` are those of :func:`fill_peaks`, ``k`` the interval.
+    """
     inside = k < peaks.shape[0]
     for i in range(2):
         s.soon[i] = scale * peaks[k, 2 + i] if inside else 0.0
@@ -399,25 +491,15 @@ def note_soon(s, peaks, k, scale, dt):
 def happen(body, what, tau, y, cut, stuck, s):
     """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J/kg].
 
-    ``tau`` is the time in the interval [s], ``cut`` the energy at which a body rests over what a fall takes, and
-    ``stuck`` how many steps in a row had hardly any length.
+    ``what`` is one of modes.LANDS and those behind it, and y the state then. First it takes effect, then the mode
+    that goes on is chosen. ``stuck`` is how many steps in a row had hardly any length: then one contact is changed
+    outright.
     """
-    g = s.field[6]
+    g = s.field[forces.GRAVITY]
     gravity = forces.effective_gravity_at(s.field, tau)
     before = solid.balance(body, y, g)
     if what == modes.LANDS:
-        modes.impact(body, y, gravity, 0, s)
-        rows = algebra.rotation(y)
-        if body.rim == 0.0 and modes.count_touching(body, y, rows) >= 3:
-            # the points that open begin with no gap, not with one of rounding
-            modes.lay_flat(body, y)
-        left = solid.energy(body, y, g)
-        carried = (
-            stands_within_balance(body, rows)
-            and modes.rest_margin(body, y, rows, gravity, s) >= 0
-        )
-        if carried and (left < cut * body.barrier or rattle_ends(body, left, s)):
-            modes.come_to_rest(body, y, s)
+        land(body, y, gravity, cut, s)
     elif what == modes.SLIP_ENDS:
         stop_slips(body, y, s)
     elif what == modes.TIE_TURNS:
@@ -425,26 +507,55 @@ def happen(body, what, tau, y, cut, stuck, s):
     elif what == modes.TIE_BREAKS:
         turn_ties(body, y, tau, True, s)
     if what == modes.OPENS and body.rim > 0 and s.count >= 3:
-        x, z = modes.pressure_centre(body, s)
-        tip_over_rim(body, y, x, z, forces.SLIDES, gravity, s)
-    elif stuck > 3 and what in (modes.OPENS, modes.LEAVES_CONE):
+        # the centre of pressure has come to the rim, over which the face tips as it slides
+        towards_x, towards_y = modes.pressure_centre(body, s)
+        tip_over_rim(body, y, towards_x, towards_y, forces.SLIDES, gravity, s)
+    elif stuck > SOON_STUCK and what in (modes.OPENS, modes.LEAVES_CONE):
         modes.insist(body, what, s)
     elif forces.kind_of(s) != forces.REST and not modes.choose_mode(body, tau, y, s):
-        s.counters[modes.JAMS] += 1
-        free = slides_any(s)
-        if free:
-            # an impact without a collision, which at least one contact takes part in
-            modes.impact(body, y, gravity, 1, s)
-            free = modes.choose_mode(body, tau, y, s)
-        if not free:
-            modes.jam(body, y, s)
+        go_on_without_forces(body, tau, y, gravity, s)
     rim_instead_of_feet(body, y, gravity, s)
     return before - solid.balance(body, y, g)
 
 
 @kernel
+def land(body, y, gravity, cut, s):
+    """Solve the impact of a landing; let the body rest if little energy is left and the ground carries it."""
+    modes.impact(body, y, gravity, LANDING, s)
+    rows = algebra.rotation(y)
+    if body.rim == 0.0 and modes.count_touching(body, y, rows) >= 3:
+        # the points that open begin with no gap, not with one of rounding
+        modes.lay_flat(body, y)
+    left = solid.energy(body, y, s.field[forces.GRAVITY])
+    carried = (
+        stands_within_balance(body, rows)
+        and modes.rest_margin(body, y, rows, gravity, s) >= 0
+    )
+    if carried and (left < cut * body.barrier or rattle_ends(body, left, s)):
+        modes.come_to_rest(body, y, s)
+
+
+@kernel
+def go_on_without_forces(body, tau, y, gravity, s):
+    """Choose a mode where contact forces do not exist (Painlevé): after an impact, or jammed.
+
+    What slides has an impact without a collision; if there is no mode after it either, what is closed sticks.
+    """
+    s.counters[modes.JAMS] += 1
+    free = slides_any(s)
+    if free:
+        modes.impact(body, y, gravity, NO_COLLISION, s)
+        free = modes.choose_mode(body, tau, y, s)
+    if not free:
+        modes.jam(body, y, s)
+
+
+@kernel
 def note_peaks(body, y, start, out):
-    """Keep the largest tilt, speed and walk; return the cosine of the tilt."""
+    """Keep the largest tilt and speed, and the walk since ``start`` (x, y) [m]; return the cosine of the tilt.
+
+    The ratio of the tilt is over that of balance, at which the centre of mass is over the outline of the base.
+    """
     rows = algebra.rotation(y)
     up = rows[2]
     sine = algebra.norm(up[0], up[1])
@@ -467,7 +578,7 @@ def note_peaks(body, y, start, out):
 
 @kernel
 def is_beyond(body, y):
-    """Whether the centre of mass of a body is beyond the outline of its base."""
+    """Whether the centre of mass is beyond the outline of the base: the body would fall on ground at rest."""
     rows = algebra.rotation(y)
     sine = algebra.norm(rows[2][0], rows[2][1])
     return reach_towards_tilt(body, rows) * rows[2][2] < sine * body.height
@@ -475,7 +586,7 @@ def is_beyond(body, y):
 
 @kernel
 def stands_within_balance(body, rows):
-    """Whether the centre of mass is within the base: what leans at a wall beyond that has little energy too."""
+    """Whether the centre of mass is above the base: what leans at a wall beyond it has little energy too."""
     up = rows[2]
     sine = algebra.norm(up[0], up[1])
     reach = reach_towards_tilt(body, rows)
@@ -503,7 +614,7 @@ def heading(y):
 
 @kernel
 def note_turn(y, before, out):
-    """Add what the heading has changed by; return it."""
+    """Add to out[TURN] what the heading has changed by since ``before`` [rad], the short way; return it."""
     now = heading(y)
     change = now - before
     change -= 2 * math.pi * math.floor(change / (2 * math.pi) + 0.5)
@@ -513,7 +624,11 @@ def note_turn(y, before, out):
 
 @kernel
 def fall_is_certain(body, y, peaks, scale, g):
-    """Whether the body leans further over its furthest point than the steepest effective gravity to come."""
+    """Whether the body leans further over its furthest point than the steepest effective gravity to come.
+
+    It has to tilt further, too (``docs/space.md``, equation 25). ``peaks`` are the largest horizontal and vertical
+    acceleration from now on, before the ``scale`` [m/s²].
+    """
     if body.constraints > 0:
         # what holds it may catch it
         return False
@@ -533,30 +648,46 @@ def fall_is_certain(body, y, peaks, scale, g):
 
 @kernel
 def note_fall(y, s, time, out):
-    """Write down how the body fell, and when it lies or, before that, when its fall is certain."""
+    """Write down that the body fell, where to, over what, and when that was certain, at ``time`` [s].
+
+    The direction is that of the body's axis in the plan; what it falls over are at most two vertices, or the rim.
+    """
     rows = algebra.rotation(y)
     out[FELL], out[CERTAIN_TIME] = 1.0, time
     out[FALL_AZIMUTH] = atan2(rows[1][2], rows[0][2])
-    out[FALL_FIRST] = s.closed[0] if s.count > 0 else -1
-    out[FALL_SECOND] = s.closed[1] if s.count > 1 else -1
+    # what it falls over is on the ground: contacts with walls are left out
+    first, second = -1, -1
+    for k in range(s.count):
+        i = s.closed[k]
+        if i < solid.WALLS and first < 0:
+            first = i
+        elif i < solid.WALLS and second < 0:
+            second = i
+    out[FALL_FIRST], out[FALL_SECOND] = first, second
 
 
 @kernel
 def record(history, k, y, out, s):
-    """Write a sample of the history, if there is one."""
+    """Write sample k of the history, shape (m, COLUMNS), if there is room; of a body at rest RESTS contacts.
+
+    Where fewer than two contacts are closed, the last columns hold what was there before.
+    """
     if k >= history.shape[0]:
         return
-    for i in range(13):
+    for i in range(solid.WORK):
         history[k, i] = y[i]
-    history[k, 13] = out[TURN]
-    history[k, 14] = 99 if s.rests else s.count
-    history[k, 15] = s.closed[0]
-    history[k, 16] = s.closed[1]
+    history[k, TURNED] = out[TURN]
+    history[k, COUNT] = RESTS if s.rests else s.count
+    history[k, FIRST] = s.closed[0]
+    history[k, SECOND] = s.closed[1]
 
 
 @kernel
 def small_rim(body, y, tau, cut, s):
-    """Let a round body lie flat whose wobble is below the cut-off while the ground would carry it flat."""
+    """Let a round body lie flat whose wobble is below the cut-off while the ground would carry it flat.
+
+    One that slides and cannot tip by friction goes on flat, and slides on its face.
+    """
     gravity = forces.effective_gravity_at(s.field, tau)
     rows = algebra.rotation(y)
     if s.count != 1:
@@ -564,12 +695,12 @@ def small_rim(body, y, tau, cut, s):
     small = LEAST_WOBBLE * cut * body.barrier
     # of the motion that tilts the body, what it would lose by lying down [J/kg]
     tilting = 0.5 * (body.inertia[0, 0] * y[10] ** 2 + body.inertia[1, 1] * y[11] ** 2)
-    lift = s.field[6] * body.rim * algebra.norm(rows[2][0], rows[2][1])
+    lift = s.field[forces.GRAVITY] * body.rim * algebra.norm(rows[2][0], rows[2][1])
     if tilting + 0.5 * y[9] ** 2 + lift >= small:
         return
     if (
         modes.rest_margin(body, y, rows, gravity, s) >= 0
-        and solid.energy(body, y, s.field[6]) < small
+        and solid.energy(body, y, s.field[forces.GRAVITY]) < small
     ):
         modes.come_to_rest(body, y, s)
     elif s.slides[0] == forces.SLIDES and body.kinetic * body.height < body.rim:
@@ -588,8 +719,12 @@ def slow_power(x):
 
 @kernel
 def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
-    """Take one step of an interval, up to its end or to what happens first; return the time and the next step."""
-    g = s.field[6]
+    """Take one step of an interval, up to its end or to what happens first.
+
+    ``next_step`` is the longest that is tried [s], ``tolerance`` the error allowed to it. Returned are the time in
+    the interval, the next step and the length of this one [s].
+    """
+    g = s.field[forces.GRAVITY]
     step.begin(body, tau, y, s)
     h = min(next_step, dt - tau)
     while True:
@@ -599,7 +734,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
             least, what = step.margin(body, s.new, s)
             # a corner that has dipped into a wall does not count at the end of a step, whatever else happens there
             hides = least >= 0 or body.walls
-            if hides and h > 1e-7 and step.dips(body, y, h, s):
+            if hides and h > LOOKS_INSIDE and step.dips(body, y, h, s):
                 h *= 0.5
                 continue
             break
@@ -641,24 +776,24 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
 
 @kernel
 def note_loss(loss, out):
-    """Add energy lost at once; what is gained is a defect, of which the whole is kept."""
+    """Add energy lost at once [J/kg]; what is gained is a defect, of which the whole is kept."""
     out[LOST] += loss
     out[GAINED] += max(-loss, 0.0)
 
 
 @kernel
 def look_after_rim(body, y, tau, cut, ahead, s, out):
-    """Pass a rolling rim through flat, or let it rest."""
+    """Pass a rim through flat, or let it rest, after a step; return the next step [s], else ``ahead``."""
     up = algebra.rotation(y)[2]
-    before = solid.energy(body, y, s.field[6])
+    before = solid.energy(body, y, s.field[forces.GRAVITY])
     passes = s.count == 1 and algebra.norm(up[0], up[1]) < FLAT_PASS
     if passes:
         s.goes_on = 0
         pass_flat(body, y, s)
     else:
         small_rim(body, y, tau, cut, s)
-    note_loss(before - solid.energy(body, y, s.field[6]), out)
-    return 1e-9 if passes else ahead
+    note_loss(before - solid.energy(body, y, s.field[forces.GRAVITY]), out)
+    return AFTER_PASS if passes else ahead
 
 
 @entry_kernel
@@ -712,7 +847,7 @@ def integrate_scales(
 
 @kernel
 def fill_peaks(acceleration, peaks):
-    """Fill in the largest horizontal and vertical acceleration from each sample on, and of the next WINDOW."""
+    """Fill the largest horizontal and vertical acceleration from each sample on, and in WINDOW of them: (n, 4)."""
     level, lift = 0.0, 0.0
     for k in range(acceleration.shape[0] - 1, -1, -1):
         across = algebra.norm(acceleration[k, 0], acceleration[k, 1])
@@ -729,7 +864,7 @@ def fill_peaks(acceleration, peaks):
 
 @kernel
 def look_ahead(peaks, part):
-    """Let each of the last two columns be at least what it is so many samples later."""
+    """Let each of the last two columns of ``peaks`` be at least what it is ``part`` samples later."""
     for k in range(peaks.shape[0] - part):
         for i in range(2, 4):
             peaks[k, i] = max(peaks[k, i], peaks[k + part, i])
@@ -737,9 +872,9 @@ def look_ahead(peaks, part):
 
 @kernel
 def rests_on(body, peaks, k, scale, g):
-    """Whether a body at rest stays there for the next WINDOW intervals, whichever way the ground pulls."""
+    """Whether a body at rest stays there for the next WINDOW intervals, whichever way the ground pushes."""
     level, weight = scale * peaks[k, 2], g - scale * peaks[k, 3]
-    upright = level * body.height < weight * body.nearest * (1 - 1e-9)
+    upright = level * body.height < weight * body.nearest * (1 - NO_MARGIN)
     return upright and level < body.static * weight
 
 
@@ -811,7 +946,7 @@ def integrate(
         began = out[CONTACT_EVENTS]
         seen = began
         s.close = modes.CLOSE
-        while dt - tau > 1e-12 * dt:
+        while dt - tau > NO_TIME * dt:
             if forces.kind_of(s) == forces.REST:
                 tau = rest_ends(body, y, s, tau, dt)
                 if tau < 0:
@@ -836,7 +971,7 @@ def integrate(
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1
             changes = max(out[CONTACT_EVENTS] - began, many / STIFF)
-            is_left = dt - tau > 1e-12 * dt
+            is_left = dt - tau > NO_TIME * dt
             if is_left and changes >= patience and solid.meets_walls_alone(body):
                 note_loss(stepping.pass_interval(body, tau, dt, y, s), out)
                 tau = dt
@@ -852,8 +987,8 @@ def integrate(
                     break
             if out[CONTACT_EVENTS] - seen >= MANY:
                 seen = out[CONTACT_EVENTS]
-                s.close = min(2.0 * s.close, 1e-3)
-            if stuck > 100:
+                s.close = min(2.0 * s.close, MOST_CLOSE)
+            if stuck > STUCK:
                 # nothing is consistent here: let the motion go on as it is for a moment
                 tau = force_step(body, tau, dt, y, s)
                 stuck = 0
@@ -876,7 +1011,7 @@ def integrate(
     out[BEYOND] = s.beyond
     out[LEANS] = out[FELL] == 0.0 and body.constraints > 0 and is_beyond(body, y)
     for i in range(solid.HOLDERS):
-        at = HELD + 4 * i
+        at = HELD + OF_HOLDER * i
         out[at], out[at + 1] = s.hits[i], s.impact[i]
         out[at + 2], out[at + 3] = s.force[i], s.breaks[i]
     out[ENERGY_BALANCE] = (
@@ -896,7 +1031,7 @@ def hardly_moves(body, y, cut):
 
 @kernel
 def begin_holding(body, y, s):
-    """Let all that holds the body be whole, and ties as they are at first."""
+    """Let all that holds the body be whole, ties be taut or slack as they are, and no force be noted yet."""
     s.bonded = body.bonded
     rows = algebra.rotation(y)
     for i in range(solid.HOLDERS):
@@ -911,7 +1046,7 @@ def begin_holding(body, y, s):
 
 @kernel
 def note_bond(body, y, tau, s):
-    """Keep by how much a side of the bond is pulled at most."""
+    """Keep the largest tension of a side of the bond, at ``tau`` [N/kg]: at most half of what the bond holds."""
     rows = algebra.rotation(y)
     pulled = modes.bond_tension(body, rows, forces.effective_gravity_at(s.field, tau))
     s.force[solid.BOND] = max(s.force[solid.BOND], min(pulled, 0.5 * body.tension))
@@ -919,7 +1054,7 @@ def note_bond(body, y, tau, s):
 
 @kernel
 def note_forces(body, y, s):
-    """Keep the largest force of each wall and tie."""
+    """Keep the largest force of each wall and tie in the state y [N/kg]."""
     rows = algebra.rotation(y)
     for i in range(body.constraints):
         if not body.ties[i]:
@@ -959,22 +1094,22 @@ def turn_ties(body, y, tau, breaks, s):
 
 @kernel
 def give_up(body, tau, y, s):
-    """End a wobble that cannot be followed any more; return the energy lost."""
-    before = solid.energy(body, y, s.field[6])
+    """End a wobble that cannot be followed any more, which counts as a problem; return the energy lost [J/kg]."""
+    before = solid.energy(body, y, s.field[forces.GRAVITY])
     s.counters[modes.UNSOLVED] += 1
     up = algebra.rotation(y)[2]
-    if body.rim > 0 and algebra.norm(up[0], up[1]) < 1e-3:
+    if body.rim > 0 and algebra.norm(up[0], up[1]) < NEXT_TO_FLAT:
         y[9] = y[10] = y[11] = 0.0
         modes.lay_flat(body, y)
     if not modes.choose_mode(body, tau, y, s):
         modes.jam(body, y, s)
-    return before - solid.energy(body, y, s.field[6])
+    return before - solid.energy(body, y, s.field[forces.GRAVITY])
 
 
 @kernel
 def force_step(body, tau, dt, y, s):
-    """Take a short step whatever the margins say."""
-    h = min(1e-6, dt - tau)
+    """Take a short step whatever the margins say, which counts as a problem; return the time after it [s]."""
+    h = min(FORCED, dt - tau)
     s.goes_on = 0
     forces.rates(body, tau, y, s.slopes[0], s)
     while step.attempt(body, tau, h, y, s) > COARSE * 1e-3 and h > SHORTEST:

@@ -1,7 +1,18 @@
 """Impacts, and which mode follows: both from the one problem of contacts with Coulomb's cone.
 
-In: a state at an event and the points that touch. Out: the velocities after an impact [m/s, rad/s], and which
-points stick, slide or part. Theory: ``docs/space.md``, "Friction and impacts", equation 5.
+In: a state at a contact event and the points that touch. Out: the velocities after an impact [m/s, rad/s], and
+which points stick, slide or part. Theory: ``docs/space.md``, "Friction and impacts" and "Derivations", equations 5
+and 9 to 21.
+
+Names (``_body`` explains the state and the numbers of contacts):
+
+- ``body``, ``s``: records ``BODY`` and ``CASE``; ``y``: the state, shape (15,)
+- ``rows``: the world's axes as the body sees them, ``rows[2]`` the upward one
+- ``gravity``: effective gravity, equation 1, in the world [m/s²]; ``weight``: the same and the ties, in the body
+- ``s.closed``: numbers of the ``s.count`` contacts of the mode; ``s.which``: of the n contacts of a small system,
+  those that touch and are solved for
+- ``found``: the contacts of a small system that push, as bits: bit k for ``s.which[k]``; -1 without a solution
+- ``s.free``, ``s.impulse``, ``s.after``: of contact k at 3 k and 3 k + 1 along it, and at 3 k + 2 away from it
 """
 
 import math
@@ -15,6 +26,7 @@ from rockfrag.engines.spatial import _stick as stick
 from rockfrag.engines.spatial._cone import solve_cones
 
 TOUCH = 1e-10  # gap below which a point touches [m]
+FLAT = 1e-9  # sine of the tilt below which a body is flat [-]
 CLOSE = 1e-6  # velocity after an impact below which a point stays closed at first [m/s]
 # the velocity that points slip above when the mode is chosen [m/s]
 AT_REST = forces.SLIP_FLOOR
@@ -22,6 +34,13 @@ AT_REST = forces.SLIP_FLOOR
 SLOW_SLIP = 30 * AT_REST
 # velocity above which points that touch leave when the mode is chosen [m/s]
 LEAVES = 1e-8
+# difference of velocities that is rounding [m/s]: of contacts as fast as each other the first ones are kept
+AS_FAST = 1e-14
+# velocity, of the centre of mass and of the spin times its height, below which a body may be laid to rest [m/s]
+STILL = 10 * CLOSE
+# velocity below which a point without a way of slip does not slip [m/s]; shear over the limit of its cone from
+# which it does [-]
+NO_SLIP, AT_LIMIT = 1e-12, 1 - 1e-9
 # hops of one end of an edge beside the other: speed above which they are followed [m/s]; part by which each is
 # slower than the one before, at least [-]; and what closing them may change of the body's angular velocity [rad/s]
 FASTEST_HOP, SLOWING, CHATTER = 1e-2, 0.05, 1e-6
@@ -30,21 +49,34 @@ BEYOND = 1e-3
 # contacts beyond the first four, beside a wall, that are taken in at most, one at a time; velocity [m/s] or, over
 # gravity, acceleration [-] at which they approach
 TAKEN_IN, MISSED = 8, 1e-9
+# how often the ratios of walls are halved at most, and the energy that an impact may gain by rounding, over that
+# which there is [-]
+RATIO_HALVINGS, ROUNDING = 40, 1e-12
+# force of ties over the weight [-], and distance of the centre of pressure from a face's edge over the furthest
+# point's [-], that are rounding; and what two directions differ by that are one [-]
+NO_FORCE, ON_EDGE, PARALLEL = 1e-9, 1e-9, 1e-9
+NO_LIMIT = 1e300  # margin of what cannot happen
 # compliance of contacts, over the largest of a body, by which gaps at walls are closed [-], and how many times
 GAP_SOFTNESS, CLOSINGS = 1e-3, 3
+# what ends a step: a point lands or opens, sticks no more or slips no more, a tie turns taut or slack, or breaks
 LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, TIE_TURNS, TIE_BREAKS = 1, 2, 3, 4, 5, 6
 NOTHING = 0
 
+# places of s.counters: impacts; problems of contacts with several solutions, and with none; points that began to
+# slide; flights; modes that no forces allow (Painlevé)
 COUNTERS = 6
 IMPACTS, AMBIGUOUS, UNSOLVED, SLIDINGS, FLIGHTS, JAMS = range(COUNTERS)
 
 
 @kernel
 def touching(body, y, rows, s):
-    """Fill in s.which with the points that touch, at most MOST, the fastest to approach; return their number."""
-    n = 0
-    if body.rim > 0 and algebra.norm(rows[2][0], rows[2][1]) < 1e-9:
+    """Fill s.which with the contacts that touch, at most four, the fastest to approach; return how many.
+
+    A round base that lies flat stands on four points of its rim, as its lowest point has no direction.
+    """
+    if body.rim > 0 and algebra.norm(rows[2][0], rows[2][1]) < FLAT:
         return stand_on_feet(body, y, rows, s)
+    n = 0
     for i in solid.candidates(body):
         if solid.gap(body, y, rows[2], i) > TOUCH:
             continue
@@ -56,7 +88,7 @@ def touching(body, y, rows, s):
 
 @kernel
 def add_wall_contact(body, y, rows, i, n, s):
-    """Add a contact of a wall to those that touch, if it does; return how many there are."""
+    """Add contact i of a corner with a wall to the n of s.which that touch, if it does; return their number."""
     if not solid.may_meet(body, i) or solid.gap_of(body, y, rows, i) > TOUCH:
         return n
     return keep_fastest(i, solid.approach_of(body, y, rows, i), n, s)
@@ -64,23 +96,28 @@ def add_wall_contact(body, y, rows, i, n, s):
 
 @kernel
 def keep_fastest(i, velocity, n, s):
-    """Add contact i to the n of s.which, in the place of the slowest to approach if all are taken; return n."""
-    speed = s.vector
+    """Add contact i to the n of s.which; return how many there are, at most four.
+
+    ``velocity`` is that of the contact away from the ground or its wall [m/s]. If all four places are taken, i
+    takes that of the slowest to approach, if it is faster. ``s.vector`` holds the velocities of those that are
+    kept.
+    """
+    away = s.vector
     if n < forces.MOST:
-        s.which[n], speed[n] = i, velocity
+        s.which[n], away[n] = i, velocity
         return n + 1
-    last = 0
+    slowest = 0
     for k in range(1, forces.MOST):
-        if speed[k] > speed[last]:
-            last = k
-    if velocity < speed[last] - 1e-14:
-        s.which[last], speed[last] = i, velocity
+        if away[k] > away[slowest]:
+            slowest = k
+    if velocity < away[slowest] - AS_FAST:
+        s.which[slowest], away[slowest] = i, velocity
     return n
 
 
 @kernel
 def picks_wall(n, s):
-    """Whether one of the contacts s.which is of a wall."""
+    """Whether one of the n contacts of the small system, s.which, is of a corner with a wall."""
     found = False
     for k in range(n):
         found = found or s.which[k] >= solid.WALLS
@@ -89,18 +126,23 @@ def picks_wall(n, s):
 
 @kernel
 def stand_on_feet(body, y, rows, s):
-    """Fill in s.which with four points of a flat rim, the first where the body would tip; return their number."""
-    p = (body.centre[0], body.centre[1], -body.height)
-    u = solid.point_velocity(y, rows, p)
-    if algebra.norm(u[0], u[1]) < AT_REST:
-        u = (s.field[0], s.field[1], 0.0)
-    front = algebra.to_body(rows, (u[0], u[1], 0.0))
-    each = body.count // forces.MOST
-    part = atan2(front[1], front[0]) / (2 * math.pi)
-    first = math.floor(part * body.count + 0.5) % body.count
+    """Fill s.which with the feet of a flat round base: four points of its rim; return how many touch.
+
+    ``body.points`` holds 32 points of the rim in equal steps of angle. The first foot is the one next to where the
+    body would tip: ahead of its centre if it slides, else where the ground's motion pushes it. The others follow
+    at right angles.
+    """
+    centre = (body.centre[0], body.centre[1], -body.height)
+    forwards = solid.point_velocity(y, rows, centre)
+    if algebra.norm(forwards[0], forwards[1]) < AT_REST:
+        forwards = (s.field[0], s.field[1], 0.0)
+    ahead = algebra.to_body(rows, (forwards[0], forwards[1], 0.0))
+    quarter = body.count // forces.MOST
+    turns = atan2(ahead[1], ahead[0]) / (2 * math.pi)
+    first = math.floor(turns * body.count + 0.5) % body.count
     n = 0
     for k in range(forces.MOST):
-        i = (first + k * each) % body.count
+        i = (first + k * quarter) % body.count
         if solid.gap(body, y, rows[2], i) <= TOUCH:
             s.which[n] = i
             n += 1
@@ -109,7 +151,11 @@ def stand_on_feet(body, y, rows, s):
 
 @kernel
 def fill_edges(body, y, rows, which, n, s):
-    """Fill in the directions between contacts in the plan."""
+    """Fill s.edge[i, j], (n, n, 2), with the unit vectors from contact i to j of ``which`` along their surface.
+
+    Of contacts with the ground they are in axes of the ground; of those with walls see :func:`along_wall`.
+    Impulses along an edge may be split between its ends (``docs/space.md``, equation 13).
+    """
     for i in range(n):
         p = solid.position_of_base(y, rows, solid.arm(body, rows[2], which[i]))
         for j in range(n):
@@ -117,40 +163,55 @@ def fill_edges(body, y, rows, which, n, s):
                 along_wall(body, y, rows, which, i, j, s)
                 continue
             q = solid.position_of_base(y, rows, solid.arm(body, rows[2], which[j]))
-            length = max(algebra.norm(q[0] - p[0], q[1] - p[1]), 1e-300)
+            length = max(algebra.norm(q[0] - p[0], q[1] - p[1]), algebra.TINY)
             s.edge[i, j, 0] = (q[0] - p[0]) / length
             s.edge[i, j, 1] = (q[1] - p[1]) / length
 
 
 @kernel
 def along_wall(body, y, rows, which, i, j, s):
-    """Fill in the direction between two contacts of one wall along it; of others, which share nothing, none."""
+    """Fill s.edge[i, j], if contacts i or j of ``which`` are at a wall, with the unit vector from i to j along it.
+
+    The two components are those of equation 9 along the wall. Contacts of different surfaces have no edge to split
+    an impulse along: theirs is (0, 0).
+    """
     s.edge[i, j, 0] = s.edge[i, j, 1] = 0.0
     first, second = which[i], which[j]
-    walls = first >= solid.WALLS and second >= solid.WALLS
-    if not walls or solid.wall_of(first) != solid.wall_of(second):
+    both_at_walls = first >= solid.WALLS and second >= solid.WALLS
+    if not both_at_walls or solid.wall_of(first) != solid.wall_of(second):
         return
     p, q = solid.arm(body, rows[2], first), solid.arm(body, rows[2], second)
-    way = solid.in_frame(body, first, algebra.to_world(rows, algebra.minus(q, p)))
-    length = max(algebra.norm(way[0], way[1]), 1e-300)
-    s.edge[i, j, 0], s.edge[i, j, 1] = way[0] / length, way[1] / length
+    along = solid.in_frame(body, first, algebra.to_world(rows, algebra.minus(q, p)))
+    length = max(algebra.norm(along[0], along[1]), algebra.TINY)
+    s.edge[i, j, 0], s.edge[i, j, 1] = along[0] / length, along[1] / length
 
 
 @kernel
 def kind_of_mode(s):
-    """Kind of a mode of which only what sticks matters: a point, an edge, or any other."""
+    """Return PIVOT or HINGE if one point or two of the ground stick and nothing else holds the body, else GENERAL.
+
+    Unlike ``_forces.kind_of`` it knows no other kinds: it chooses between the closed forms of :func:`hold_still`
+    and the linear system of :func:`hold`.
+    """
     if forces.at_wall(s):
         return forces.GENERAL
-    if s.rests == 0 and s.count == 1 and s.slides[0] == forces.STICKS:
+    first_sticks = s.slides[0] == forces.STICKS
+    if s.rests == 0 and s.count == 1 and first_sticks:
         return forces.PIVOT
-    if s.rests == 0 and s.count == 2 and s.slides[0] + s.slides[1] == 0:
+    second_sticks = s.slides[1] == forces.STICKS
+    if s.rests == 0 and s.count == 2 and first_sticks and second_sticks:
         return forces.HINGE
     return forces.GENERAL
 
 
 @kernel
 def hold_still(body, y, rows, kind, s):
-    """Take away what velocity is left at a point or an edge that sticks."""
+    """Stop the point or the edge that sticks by an impulse, in the state y (``docs/space.md``, equations 11, 12).
+
+    ``kind`` is PIVOT or HINGE, as :func:`kind_of_mode` found. Before the impulse all points have the velocity of
+    the centre of mass but for rotation. An edge may then have only a velocity along itself, that of both ends, so
+    that any tolerance of :func:`_forces.stop_edge` does.
+    """
     velocity = algebra.to_body(rows, (y[7], y[8], y[9]))
     momentum = algebra.times(body.inertia, solid.omega_of(y))
     i = s.closed[0]
@@ -168,7 +229,11 @@ def hold_still(body, y, rows, kind, s):
 
 @kernel
 def hold(body, y, rows, s):
-    """Take away what velocity is left against the conditions of a mode, by the least kinetic energy."""
+    """Take from the state y the velocity that the conditions of its mode forbid, by the least kinetic energy.
+
+    What sticks may not move, what slides only along its surface. The impulses that see to it are without friction;
+    of all changes of velocity that do it theirs is that of the least kinetic energy (Gauss).
+    """
     n = s.count
     if n == 0:
         return
@@ -186,7 +251,12 @@ def hold(body, y, rows, s):
 
 @kernel
 def impact(body, y, gravity, least, s):
-    """Solve an impact of all points that touch, and hold those that hardly leave."""
+    """Change the state y by an impact of all points that touch, and write the mode after it to ``s``.
+
+    ``least`` is how many contacts push at least: 0 of a landing; 1 of an impact without a collision, which stands
+    in for contact forces that do not exist (Painlevé). The mode keeps the contacts that pushed, and those that
+    leave slowly.
+    """
     rows = algebra.rotation(y)
     before = (y[7], y[8], y[9])
     n = touching(body, y, rows, s)
@@ -216,12 +286,13 @@ def impact(body, y, gravity, least, s):
 
 @kernel
 def impact_at_wall(body, y, rows, gravity, n, least, s):
-    """Solve an impact at walls, and what it asks of the ground, with the ratios of the walls.
+    """Change the state y by an impact at walls and at the ground; arguments are those of :func:`impact`.
 
-    Newton's ratio and friction together may gain energy; then all ratios are halved until they do not.
+    ``n`` contacts are in s.which. More may touch than these: a round at a time, the one that would be passed
+    through fastest takes the place of the one that is least needed.
     """
     came = (y[7], y[8], y[9], y[10], y[11], y[12])
-    before = solid.energy(body, y, s.field[6])
+    before = solid.energy(body, y, s.field[forces.GRAVITY])
     found, solutions = -1, 0
     for _ in range(TAKEN_IN):
         found, solutions = bounce_without_gain(body, y, rows, n, least, came, before, s)
@@ -251,16 +322,21 @@ def impact_at_wall(body, y, rows, gravity, n, least, s):
 
 @kernel
 def bounce_without_gain(body, y, rows, n, least, came, before, s):
-    """Solve an impact at walls from the velocities that came, with the largest part of the ratios without gain."""
+    """Solve an impact at walls; return the set that pushes and how many would do.
+
+    Newton's ratio together with friction may gain energy. The ratios of all walls are halved until they do not.
+    ``came`` are the velocities before, y[7:13] [m/s, rad/s], which each trial begins with, and ``before`` the
+    energy [J/kg].
+    """
     part, found, solutions = 1.0, -1, 0
-    for _ in range(40):
+    for _ in range(RATIO_HALVINGS):
         for k in range(6):
-            y[7 + k] = came[k]
+            y[solid.VELOCITY + k] = came[k]
         found, solutions = bounce(body, y, rows, n, least, part, s)
         if found < 0:
             break
-        gained = solid.energy(body, y, s.field[6]) - before
-        if gained <= 1e-12 * (before + s.field[6] * body.height):
+        gained = solid.energy(body, y, s.field[forces.GRAVITY]) - before
+        if gained <= ROUNDING * (before + s.field[forces.GRAVITY] * body.height):
             break
         part *= 0.5
     return found, solutions
@@ -268,24 +344,28 @@ def bounce_without_gain(body, y, rows, n, least, came, before, s):
 
 @kernel
 def missed(body, y, rows, n, moves, small, pushed, s):
-    """Contact that touches, is none of s.which and approaches fastest; -1 if none approaches.
+    """Number of the contact that touches, is none of s.which and approaches fastest; -1 if none approaches.
 
-    ``moves`` holds the velocity of the centre of mass and the angular velocity, in the body; or, where the body is
-    ``pushed``, accelerations, and what leaves already is left out.
+    ``moves`` holds what the centre of mass and the body do after an impact: velocity [m/s] and angular velocity
+    [rad/s] in the body. If ``pushed``, they are accelerations in their place, and contacts that leave already are
+    left out. What approaches more slowly than ``small`` [m/s or m/s²] does not count.
     """
     load, spin = moves
-    worst, fastest = -1, -small
+    fastest, least = -1, -small
     for k in range(solid.meetings(body)):
         i = solid.meeting(body, k)
         u = approaches(body, y, rows, n, i, load, spin, pushed, s)
-        if u < fastest:
-            worst, fastest = i, u
-    return worst
+        if u < least:
+            fastest, least = i, u
+    return fastest
 
 
 @kernel
 def approaches(body, y, rows, n, i, load, spin, pushed, s):
-    """Velocity (or acceleration) away of contact i, if it touches and is none of s.which; else 0."""
+    """Velocity [m/s] or acceleration [m/s²] of contact i away from its surface, if it touches outside of s.which.
+
+    It is 0 of all others; arguments are those of :func:`missed`.
+    """
     for k in range(n):
         if s.which[k] == i:
             return 0.0
@@ -303,10 +383,9 @@ def approaches(body, y, rows, n, i, load, spin, pushed, s):
 
 @kernel
 def least_needed(n, found, s):
-    """The contact that another one may take the place of: it does not push, and parts fastest.
+    """Place in s.which of the contact that another one may replace; -1 if all push.
 
-    In: the set ``found`` that pushes, as bits, and s.after, the velocities along both ways and across, three a
-    contact. Out: the place in s.which, -1 if all push.
+    It is the one that is not in the set ``found`` and parts fastest, by s.after.
     """
     best = -1
     for k in range(n):
@@ -318,7 +397,11 @@ def least_needed(n, found, s):
 
 @kernel
 def bounce(body, y, rows, n, least, part, s):
-    """Push with the impulses at the contacts s.which that part of the walls' ratios ask for; return the set."""
+    """Push the state y at the contacts s.which by the ratios of walls; return the set, and how many would do.
+
+    A wall with the ratio e asks for u_n⁺ ≥ -e u_n⁻: e u_n⁻ is added to the velocity that is stopped. ``part`` is
+    what all ratios are multiplied by. s.after gets the velocities as they are after the impact.
+    """
     forces.fill_velocities(body, y, rows, s.which, n, s.free)
     note_slips(body, n, s)
     for i in range(n):
@@ -339,7 +422,7 @@ def bounce(body, y, rows, n, least, part, s):
 
 @kernel
 def note_impulses(body, n, found, s):
-    """Count hits at walls, and keep their largest impulse."""
+    """Count the hits at each wall by the contacts of the set ``found``, and keep the largest impulse [m/s]."""
     for w in range(body.constraints):
         whole = 0.0
         for i in range(n):
@@ -353,13 +436,14 @@ def note_impulses(body, n, found, s):
 
 @kernel
 def witness(body, y, before, s):
-    """Note, and count, what the whole change of momentum asks of friction beyond what it can give.
+    """Note, and count, the momentum that an impact would need beyond what friction can give [m/s].
 
-    ``before`` is the velocity of the centre of mass before the impact; its change is the impulse of all contacts
-    for a unit of mass [m/s], of which static friction bears so much of the normal part.
+    ``before`` is the velocity of the centre of mass before; its change is the impulse of all contacts for a unit
+    of mass. Static friction bears so much of its normal part along the ground. The largest excess stays in
+    s.beyond, and one above BEYOND counts as a problem without a solution.
     """
-    x, z, up = solid.VELOCITY, solid.VELOCITY + 1, solid.VELOCITY + 2
-    shear = algebra.norm(y[x] - before[0], y[z] - before[1])
+    east, north, up = solid.VELOCITY, solid.VELOCITY + 1, solid.VELOCITY + 2
+    shear = algebra.norm(y[east] - before[0], y[north] - before[1])
     beyond = shear - body.static * (y[up] - before[2])
     s.beyond = max(s.beyond, beyond)
     s.counters[UNSOLVED] += beyond > BEYOND
@@ -367,7 +451,11 @@ def witness(body, y, before, s):
 
 @kernel
 def solve(body, y, rows, n, least, moment, s):
-    """Find the impulses (or forces) at the contacts s.which; return the set that pushes, and how many would do."""
+    """Find the impulses (or forces) at the n contacts s.which; return the set that pushes, and how many would do.
+
+    Arguments are those of :func:`_stick.stick_alone_or_by_two`, which finds nearly all. What slides, regains its
+    grip or is at a wall goes to the cones at once.
+    """
     plain = not picks_wall(n, s)
     for i in range(n):
         regains = s.slid[i] and s.friction[i] < s.holds[i]
@@ -383,7 +471,11 @@ def solve(body, y, rows, n, least, moment, s):
 
 @kernel
 def note_slips(body, n, s):
-    """Note which contacts slip before an impact, and where to, and the coefficients of friction in it."""
+    """Fill what friction in an impact depends on, for each contact of s.which, from s.free.
+
+    ``s.slid`` and ``s.came``: whether it slips before and where to; ``s.friction`` and ``s.holds``: its kinetic
+    and static coefficients; no contact has the direction of its slip given but one without friction.
+    """
     for i in range(n):
         u, v = s.free[3 * i], s.free[3 * i + 1]
         speed = algebra.norm(u, v)
@@ -398,18 +490,22 @@ def note_slips(body, n, s):
 
 @kernel
 def let_slip(i, s):
-    """Let contact i of a small system slip: without friction its direction is of no effect."""
+    """Let contact i of a small system, which has no friction, slip whatever its velocity.
+
+    Its direction of slip is given, any will do. It counts as not having slipped before, so that it regains no
+    grip.
+    """
     s.given[i], s.slid[i] = 1, 0
     s.way[i, 0], s.way[i, 1] = 1.0, 0.0
 
 
 @kernel
 def chatters(body, y, rows, gravity, i, k, leaving, s):
-    """Whether contact k hops, with a speed, beside contact i on which the body pivots, so little that both close.
+    """Whether contact k hops so little beside contact i, on which the body pivots, that both may close.
 
-    Impacts at either end conserve the momentum about the edge between them, with which it goes on when hops are
-    over.  What is left out is of the third order: the tilt of the edge in a hop, u² / (2 a L), turns gravity's
-    moment, over h, for the time of all hops, 2 u / (a (1 - r)).
+    ``i`` and ``k`` are places in s.which, ``leaving`` the speed of the hop [m/s]. Impacts at either end conserve
+    the momentum about the edge between them, with which the body goes on when the hops are over. What is left out
+    of it is at most that of equation 18 (``docs/space.md``), and must be below CHATTER.
     """
     if leaving > FASTEST_HOP:
         return False
@@ -419,20 +515,25 @@ def chatters(body, y, rows, gravity, i, k, leaving, s):
     p, turned = solid.arm_and_bias(body, up, omega, here)
     alpha, force = forces.pivot_acceleration(body, p, turned, omega, weight, here, s)
     q = solid.arm(body, up, there)
-    free = algebra.plus(weight, solid.bias(body, up, omega, q, there))
-    free = algebra.plus(free, algebra.plus(force, algebra.cross(alpha, q)))
-    falls = -algebra.dot(up, free)
+    # acceleration of the far end while the body pivots
+    far = algebra.plus(weight, solid.bias(body, up, omega, q, there))
+    far = algebra.plus(far, algebra.plus(force, algebra.cross(alpha, q)))
+    falls = -algebra.dot(up, far)
     if falls <= 0.0:
         return False
     edge = algebra.minus(q, p)
     length = math.sqrt(algebra.dot(edge, edge))
-    left_out = leaving**3 * s.field[6] / (SLOWING * falls**2 * length * body.height)
+    g = s.field[forces.GRAVITY]
+    left_out = leaving**3 * g / (SLOWING * falls**2 * length * body.height)
     return left_out < CHATTER
 
 
 @kernel
 def hopping(body, y, rows, gravity, n, found, s):
-    """Contact that chatters beside the only one that pushed, and stuck; -1 if there is none."""
+    """Place in s.which of a contact that chatters beside the only one that pushed, and stuck; -1 if there is none.
+
+    Rims do not hop. Of several contacts it is the one that leaves slowest.
+    """
     slowest, alone = -1, -1
     for k in range(n):
         if found == 1 << k:
@@ -450,7 +551,11 @@ def hopping(body, y, rows, gravity, n, found, s):
 
 @kernel
 def keep_slow_contacts(body, y, rows, gravity, n, found, s):
-    """Close, together with those that pushed, the contacts that leave more slowly than CLOSE, or chatter."""
+    """Write the mode after an impact to ``s``: contacts that pushed, leave more slowly than s.close, or chatter.
+
+    In: the n contacts s.which with s.after, and the set ``found`` that pushed. What is kept though it would leave
+    is held, which changes the state y by little.
+    """
     count = 0
     slow = False
     hops = -1
@@ -473,7 +578,10 @@ def keep_slow_contacts(body, y, rows, gravity, n, found, s):
 
 @kernel
 def bond_margin(body, rows, gravity):
-    """Margin by which a bond holds [N/kg], against tension at a pad and against shear (``docs/holding.md``)."""
+    """Margin by which a bond holds [N/kg], against tension at a pad and against shear (``docs/holding.md``).
+
+    A side, of two pads of four, holds half the tension of all.
+    """
     weight = -gravity[2]
     shear = body.shear + body.static * weight - algebra.norm(gravity[0], gravity[1])
     return min(2.0 * (0.5 * body.tension - bond_tension(body, rows, gravity)), shear)
@@ -481,27 +589,35 @@ def bond_margin(body, rows, gravity):
 
 @kernel
 def bond_tension(body, rows, gravity):
-    """Force by which one side of a bond is pulled, for a unit of mass; negative where it is pressed."""
+    """Largest force by which one side of a bond, two of its four pads, is in tension [N/kg]; negative if pressed.
+
+    Each of the four sides takes half of the load and the moment about the other axis over the distance of the
+    pads; body.pads holds half that distance, and body.aside how far the centre of mass is from between them.
+    """
     flat = algebra.to_body(rows, (gravity[0], gravity[1], 0.0))
-    whole = gravity[2]
+    total = gravity[2]
     for k in range(2):
         moment = body.height * flat[k] - gravity[2] * body.aside[k]
-        whole += abs(moment) / body.pads[k]
-    return 0.5 * whole
+        total += abs(moment) / body.pads[k]
+    return 0.5 * total
 
 
 @kernel
 def pulled_by_ties(body, y, rows, s):
-    """Whether ties pull at a body as it stands with more than rounding; their force stays in s.pulled [N/kg]."""
+    """Whether ties act at a body as it stands with more than rounding; their force stays in s.pulled [N/kg]."""
     forces.fill_tie_forces(body, y, rows, s)
     pulled = abs(s.pulled[0]) + abs(s.pulled[1]) + abs(s.pulled[2])
-    gravity = s.field[6]
-    return pulled > 1e-9 * gravity
+    return pulled > NO_FORCE * s.field[forces.GRAVITY]
 
 
 @kernel
 def rest_margin(body, y, rows, gravity, s):
-    """Least margin of acceleration by which the body rests: over the edges of its base, and of friction."""
+    """Least margin by which a body rests [m/s²]: against tipping over each edge of its base, and against sliding.
+
+    Negative: the ground does not carry it at rest (``docs/space.md``, equation 21). Edges lie between points that
+    touch and follow each other around the base. With ties in tension, or with less than two points, it is -1: no
+    rest.
+    """
     if s.bonded:
         return bond_margin(body, rows, gravity)
     if body.constraints > 0 and pulled_by_ties(body, y, rows, s):
@@ -529,29 +645,30 @@ def rest_margin(body, y, rows, gravity, s):
 
 @kernel
 def tipping_margin(body, y, rows, gravity, i, j):
-    """Margin of rest against tipping over an edge; none is needed where a wall stands against it."""
+    """Margin of rest against tipping over the edge from point i to j [m/s²]; without limit if a wall is there."""
     if body.walls and backed_by_wall(body, y, rows, i, j):
-        return 1e300
+        return NO_LIMIT
     return edge_margin(body, y, rows, gravity, i, j)
 
 
 @kernel
 def backed_by_wall(body, y, rows, i, j):
-    """Whether a wall touches a body all along its side over the edge from point i to j."""
+    """Whether a body cannot tip over the edge from point i to j, as its side there lies against a wall."""
     p, q = solid.arm(body, rows[2], i), solid.arm(body, rows[2], j)
     edge = algebra.to_world(rows, algebra.minus(q, p))
     length = algebra.norm(edge[0], edge[1])
     outward = (edge[1] / length, -edge[0] / length)
     for w in range(body.constraints):
         along = outward[0] * body.away[w, 0] + outward[1] * body.away[w, 1]
-        if not body.ties[w] and along <= -1.0 + 1e-9 and lies_against(body, y, rows, w):
+        against = not body.ties[w] and along <= -1.0 + PARALLEL
+        if against and lies_against(body, y, rows, w):
             return True
     return False
 
 
 @kernel
 def lies_against(body, y, rows, w):
-    """Whether a body that stands touches wall w with a side, at two of its upper corners."""
+    """Whether a body that stands touches wall w with a side: at two or more of its upper corners."""
     touch = 0
     for k in range(body.corners):
         at = solid.WALLS + w * solid.MOST_CORNERS + k
@@ -562,9 +679,9 @@ def lies_against(body, y, rows, w):
 
 @kernel
 def borne_by_ground(body, y, rows, gravity):
-    """Part of the effective gravity that the ground has to bear under a body at rest beside walls.
+    """Part of the effective gravity [m/s²] that the ground has to bear under a body at rest beside walls.
 
-    What presses a side against a wall the wall can bear, at the height of the centre of mass.
+    A wall can bear what presses a side against it, at the height of the centre of mass; that part is taken out.
     """
     for w in range(body.constraints):
         a, b = body.away[w, 0], body.away[w, 1]
@@ -576,31 +693,32 @@ def borne_by_ground(body, y, rows, gravity):
 
 @kernel
 def pulled_off(body, gravity):
-    """Whether static friction of the whole base cannot hold it."""
+    """Whether static friction of the whole base cannot hold it under an effective gravity in the world [m/s²]."""
     return algebra.norm(gravity[0], gravity[1]) > -body.static * gravity[2]
 
 
 @kernel
 def topple_margin(body, rows, gravity):
-    """Margin by which the ground carries a round body that is flat, whatever it slides."""
+    """Margin of a flat round body against tipping, whatever it slides [m/s²] (``docs/space.md``, equation 21)."""
     centre = algebra.to_world(rows, (body.centre[0], body.centre[1], 0.0))
-    x = body.height * gravity[0] + gravity[2] * centre[0]
-    y = body.height * gravity[1] + gravity[2] * centre[1]
-    return (-body.rim * gravity[2] - algebra.norm(x, y)) / body.height
+    moment_x = body.height * gravity[0] + gravity[2] * centre[0]
+    moment_y = body.height * gravity[1] + gravity[2] * centre[1]
+    overturning = algebra.norm(moment_x, moment_y)
+    return (-body.rim * gravity[2] - overturning) / body.height
 
 
 @kernel
 def lies_flat(body, y, rows):
-    """Whether a body lies flat and does not tilt."""
-    if algebra.norm(rows[2][0], rows[2][1]) > 1e-9 or abs(y[9]) > LEAVES:
+    """Whether a body lies flat on the ground, neither rises nor begins to tilt; it may slide and spin."""
+    if algebra.norm(rows[2][0], rows[2][1]) > FLAT or abs(y[solid.UPWARD]) > LEAVES:
         return False
-    turns = algebra.norm(y[10], y[11]) > LEAVES / body.furthest
-    return not turns and abs(y[2] - body.height) < TOUCH
+    turns = algebra.norm(y[solid.SPIN], y[solid.SPIN + 1]) > LEAVES / body.furthest
+    return not turns and abs(y[solid.HEIGHT] - body.height) < TOUCH
 
 
 @kernel
 def meets_wall(body, y, rows):
-    """Whether a corner touches a wall."""
+    """Whether a corner of base or face touches a wall."""
     found = False
     for i in solid.wall_candidates(body):
         if not found and solid.may_meet(body, i):
@@ -610,11 +728,16 @@ def meets_wall(body, y, rows):
 
 @kernel
 def carried_flat(body, tau, y, rows, gravity, s):
-    """Whether a body that lies flat, and slides or is about to, stays on its face; a polygon slides on it then."""
+    """Whether a body that lies flat, and slides or is about to, stays on its face; s gets the mode of a polygon.
+
+    A polygon stays if the centre of pressure under it is inside. A round base stays if friction cannot tip it, µ h
+    less than the distance of the rim; or if it does not slide yet and the ground carries it. ``tau`` is the time
+    in the interval [s].
+    """
     if body.rim == 0.0:
         slide_flat(body, y, rows, gravity, s)
         forces.rates(body, tau, y, s.slopes[0], s)
-        return pressure_margin(body, s) > 1e-9 * body.furthest
+        return pressure_margin(body, s) > ON_EDGE * body.furthest
     off = algebra.norm(body.centre[0], body.centre[1])
     if body.kinetic * body.height + off < body.rim:
         return True
@@ -625,22 +748,26 @@ def carried_flat(body, tau, y, rows, gravity, s):
 
 @kernel
 def pressure_centre(body, s):
-    """Where the normal forces of closed points act, from the centre of a round base, in the body."""
-    x, y, whole = 0.0, 0.0, 1e-300
+    """Where the normal forces of the closed points act, in the base of the body, (x, y) [m].
+
+    It counts from the centre of a round base, and of a polygon from below the centre of mass, where body.centre is
+    0.
+    """
+    x, y, total = 0.0, 0.0, algebra.TINY
     for i in range(s.count):
         x += s.lam[i, 2] * (body.points[s.closed[i], 0] - body.centre[0])
         y += s.lam[i, 2] * (body.points[s.closed[i], 1] - body.centre[1])
-        whole += s.lam[i, 2]
-    return x / whole, y / whole
+        total += s.lam[i, 2]
+    return x / total, y / total
 
 
 @kernel
 def pressure_margin(body, s):
-    """Distance of the centre of pressure of a face from its edge, negative outside [m]."""
+    """Distance of the centre of pressure of a face from its nearest edge, or the rim; negative outside [m]."""
     x, y = pressure_centre(body, s)
     if body.rim > 0:
         return body.rim - algebra.norm(x, y)
-    least = 1e300
+    least = NO_LIMIT
     for i in range(body.count):
         p, q = body.points[i], body.points[i + 1 if i + 1 < body.count else 0]
         along, across = q[0] - p[0], q[1] - p[1]
@@ -651,7 +778,10 @@ def pressure_margin(body, s):
 
 @kernel
 def pick_feet(body, y, rows, s):
-    """Fill in s.which with the points on which a face slides; return their number."""
+    """Fill s.which with the points on which a whole face slides; return how many.
+
+    Of a polygon they are four vertices at most, evenly taken; of a round base its four feet.
+    """
     if body.rim > 0:
         return touching(body, y, rows, s)
     n = min(body.count, forces.MOST)
@@ -662,8 +792,11 @@ def pick_feet(body, y, rows, s):
 
 @kernel
 def slide_flat(body, y, rows, gravity, s):
-    """Let a body slide on points of its face, those that do not slip yet the way it is pulled."""
-    level = max(algebra.norm(gravity[0], gravity[1]), 1e-300)
+    """Let the body slide on its whole face: write such a mode to ``s``.
+
+    Points slide where they slip to; those that do not slip yet slide where effective gravity takes them.
+    """
+    level = max(algebra.norm(gravity[0], gravity[1]), algebra.TINY)
     n = pick_feet(body, y, rows, s)
     s.count, s.rests = n, 0
     for i in range(n):
@@ -678,8 +811,8 @@ def slide_flat(body, y, rows, gravity, s):
 def edge_margin(body, y, rows, gravity, i, j):
     """Margin of rest against tipping over the edge from point i to the next point j that touches [m/s²].
 
-    It is the moment about the edge of the effective gravity, over the mass and the height of the centre of mass,
-    positive while it holds the body down.
+    It is the moment about the edge of the effective gravity over the height of the centre of mass, positive while
+    it holds the body down (``docs/space.md``, equation 21).
     """
     p = solid.position_of_base(y, rows, solid.arm(body, rows[2], i))
     q = solid.position_of_base(y, rows, solid.arm(body, rows[2], j))
@@ -693,7 +826,7 @@ def edge_margin(body, y, rows, gravity, i, j):
 
 @kernel
 def count_touching(body, y, rows):
-    """Number of points of the base that touch, as if a round base had its four feet."""
+    """How many points of the base touch; of a round one, of the 32 points of its rim that body.points holds."""
     n = 0
     for i in range(body.count):
         n += solid.gap(body, y, rows[2], i) <= TOUCH
@@ -702,49 +835,43 @@ def count_touching(body, y, rows):
 
 @kernel
 def come_to_rest(body, y, s):
-    """Make the body rest where it is."""
+    """Let the body rest where it is: no velocity, flat, and the mode in ``s``."""
     s.count, s.rests = 0, 1
-    for k in range(7, 13):
+    for k in range(solid.VELOCITY, solid.WORK):
         y[k] = 0.0
     lay_flat(body, y)
 
 
 @kernel
 def lay_flat(body, y):
-    """Turn the base into the ground's plane by the least rotation, and set it down."""
+    """Turn the base into the ground's plane by the least rotation, and set it down; changes the state y.
+
+    The rotation is about the horizontal axis across the tilt, by the sine of it; two more rounds take what this
+    leaves of its third power.
+    """
     for _ in range(3):
         up = algebra.rotation(y)[2]
         algebra.turn(y, (-up[1], up[0], 0.0))
-    y[2] = body.height
+    y[solid.HEIGHT] = body.height
 
 
 @kernel
 def choose_mode(body, tau, y, s):
-    """Choose the mode that follows for the points that touch and do not leave; return whether one was found."""
+    """Choose the mode that goes on from the state y, and write it to ``s``; return whether one was found.
+
+    ``tau`` is the time in the interval [s]. In this order: rest, a face that slides, or the forces of the contacts
+    that touch and do not leave. Where there are no such forces, points that slip by less than SLOW_SLIP are tried
+    as points that stick. Velocity that the mode forbids is taken away.
+    """
     rows = algebra.rotation(y)
     gravity = forces.effective_gravity_at(s.field, tau)
-    spin = body.height * math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
-    still = math.sqrt(y[7] ** 2 + y[8] ** 2 + y[9] ** 2) + spin < 10 * CLOSE
-    if (
-        still
-        and count_touching(body, y, rows) >= 3
-        and rest_margin(body, y, rows, gravity, s) >= 0
-    ):
+    if may_rest(body, y, rows, gravity, s):
         come_to_rest(body, y, s)
         return True
     was_flying = s.count == 0
-    if lies_flat(body, y, rows) and not meets_wall(body, y, rows):
-        slip = algebra.norm(y[7], y[8]) + body.furthest * abs(y[12])
-        stands = rest_margin(body, y, rows, gravity, s) >= 0
-        slides = slip >= 2 * AT_REST or pulled_off(body, gravity) or body.rim > 0
-        if slides and carried_flat(body, tau, y, rows, gravity, s):
-            if slip < 2 * AT_REST and stands:
-                come_to_rest(body, y, s)
-            else:
-                slide_flat(body, y, rows, gravity, s)
-                s.counters[SLIDINGS] += 1
-            s.jammed = 0
-            return True
+    flat = lies_flat(body, y, rows) and not meets_wall(body, y, rows)
+    if flat and stay_on_face(body, tau, y, rows, gravity, s):
+        return True
     n, slipping = pick_closed(body, y, rows, AT_REST, s)
     found, solutions = solve_forces(body, y, rows, gravity, n, AT_REST, s)
     if found < 0:
@@ -763,8 +890,41 @@ def choose_mode(body, tau, y, s):
 
 
 @kernel
+def may_rest(body, y, rows, gravity, s):
+    """Whether a body hardly moves, three points touch, and the ground carries it at rest."""
+    spin = body.height * math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
+    still = math.sqrt(y[7] ** 2 + y[8] ** 2 + y[9] ** 2) + spin < STILL
+    stands = still and count_touching(body, y, rows) >= 3
+    return stands and rest_margin(body, y, rows, gravity, s) >= 0
+
+
+@kernel
+def stay_on_face(body, tau, y, rows, gravity, s):
+    """Let a body that lies flat slide or rest on its whole face; return whether it stays on it.
+
+    Points that slip by less than twice AT_REST may stick, if the ground carries the body at rest. A polygon that
+    neither slips nor begins to is left to the forces of its contacts.
+    """
+    slip = algebra.norm(y[7], y[8]) + body.furthest * abs(y[12])
+    stands = rest_margin(body, y, rows, gravity, s) >= 0
+    slides = slip >= 2 * AT_REST or pulled_off(body, gravity) or body.rim > 0
+    if not slides or not carried_flat(body, tau, y, rows, gravity, s):
+        return False
+    if slip < 2 * AT_REST and stands:
+        come_to_rest(body, y, s)
+    else:
+        slide_flat(body, y, rows, gravity, s)
+        s.counters[SLIDINGS] += 1
+    s.jammed = 0
+    return True
+
+
+@kernel
 def pick_closed(body, y, rows, slow, s):
-    """Fill s.which with points that touch and do not leave, and how each slips; count both."""
+    """Fill s.which with the contacts that touch and do not leave, and how each slips.
+
+    What is slower than ``slow`` [m/s] sticks. Returned are how many contacts there are, and how many of them slip.
+    """
     n = touching(body, y, rows, s)
     kept, slipping = 0, 0
     for i in range(n):
@@ -782,8 +942,9 @@ def pick_closed(body, y, rows, slow, s):
 def note_slip(body, k, u, slow, s):
     """Note in ``s`` how contact k of a small system slips where a mode is chosen; return whether it does.
 
-    ``u`` is its velocity, along it and across it [m/s]; what is slower than ``slow`` sticks.  A contact that slips
-    has its direction given (``given``, ``way``) and kinetic friction, one that sticks static friction (``holds``).
+    ``u`` is its velocity, two components along it and one away [m/s]; what is slower than ``slow`` sticks. A
+    contact that slips has its direction given (``given``, ``way``) and kinetic friction, one that sticks static
+    friction (``holds``).
     """
     speed = algebra.norm(u[0], u[1])
     slips = speed > slow
@@ -799,11 +960,11 @@ def note_slip(body, k, u, slow, s):
 
 @kernel
 def solve_forces(body, y, rows, gravity, n, slow, s):
-    """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do.
+    """Solve for the forces at the n contacts s.which; return the set that pushes, and how many would do.
 
     Beside walls more contacts may touch than are solved for at once. A round at a time, what would be passed
-    through takes the place of the contact that is least needed, until none would be. ``n`` is the number of
-    contacts, and ``slow`` the velocity above which they slip [m/s].
+    through takes the place of the contact that is least needed, until none would be. ``slow`` is the velocity
+    above which a contact slips [m/s]. s.impulse gets the forces [N/kg], s.after the accelerations [m/s²].
     """
     weight = forces.load_on(body, y, rows, gravity, s)
     moment = stick.fill_accelerations(body, y, rows, weight, n, s)
@@ -819,7 +980,7 @@ def solve_forces(body, y, rows, gravity, n, slow, s):
         if found < 0:
             break
         moves = pushed_by(body, rows, n, weight, moment, s)
-        i = missed(body, y, rows, n, moves, MISSED * s.field[6], True, s)
+        i = missed(body, y, rows, n, moves, MISSED * s.field[forces.GRAVITY], True, s)
         at = least_needed(n, found, s)
         if i < 0 or at < 0:
             break
@@ -832,7 +993,10 @@ def solve_forces(body, y, rows, gravity, n, slow, s):
 
 @kernel
 def pushed_by(body, rows, n, weight, moment, s):
-    """Acceleration and angular acceleration, in the body, under the forces that were found."""
+    """Acceleration of the centre of mass [m/s²] and angular acceleration [rad/s²], in the body, under s.impulse.
+
+    ``weight`` [N/kg] and ``moment`` [N m/kg] are, in the body, what acts beside the forces of the n contacts.
+    """
     load, spin = weight, algebra.times(body.inverse, moment)
     for k in range(n):
         push = (s.impulse[3 * k], s.impulse[3 * k + 1], s.impulse[3 * k + 2])
@@ -845,7 +1009,11 @@ def pushed_by(body, rows, n, weight, moment, s):
 
 @kernel
 def write_mode(body, y, rows, n, found, s):
-    """Read the mode off a solution: closed or open, sticks or slides and where to."""
+    """Write the mode of a solution to ``s``: the contacts of the set ``found`` are closed, and stick or slide.
+
+    What had a way of slip given slides there. What had none slides, the way it accelerates, where its force is at
+    the limit of its cone.
+    """
     count = 0
     s.rests = 0
     for i in range(n):
@@ -861,7 +1029,7 @@ def write_mode(body, y, rows, n, found, s):
             shear = algebra.norm(s.impulse[3 * i], s.impulse[3 * i + 1])
             limit = s.grip[i] * s.impulse[3 * i + 2]
             size = algebra.norm(u, v)
-            if size > 1e-12 and shear > limit * (1 - 1e-9):
+            if size > NO_SLIP and shear > limit * AT_LIMIT:
                 s.slides[count] = forces.SLIDES
                 s.direction[count, 0], s.direction[count, 1] = u / size, v / size
                 s.counters[SLIDINGS] += 1
@@ -872,8 +1040,12 @@ def write_mode(body, y, rows, n, found, s):
 
 @kernel
 def insist(body, what, s):
-    """Open the contact that pulls most, or slide the one furthest out of its cone, where a mode comes again."""
-    worst, value = 0, 1e300
+    """Change one contact of a mode that was chosen again and again though it ends at once.
+
+    ``what`` is what ends it. If it OPENS, the contact with the least normal force opens; else the one furthest out
+    of its cone slides, against its shear.
+    """
+    worst, value = 0, NO_LIMIT
     for i in range(s.count):
         shear = algebra.norm(s.lam[i, 0], s.lam[i, 1])
         grip = solid.static_of(body, s.closed[i])
@@ -898,7 +1070,10 @@ def insist(body, what, s):
 
 @kernel
 def jam(body, y, s):
-    """Let all that is closed stick without a look at the cones (Painlevé), until one opens or one lands."""
+    """Let all that is closed stick without a look at the cones (Painlevé), until one opens or one lands.
+
+    Contacts without friction go on to slide. What sticks does no work, so no energy comes in.
+    """
     for i in range(s.count):
         if not solid.is_smooth(body, s.closed[i]):
             s.slides[i] = forces.STICKS
@@ -909,7 +1084,7 @@ def jam(body, y, s):
 
 @kernel
 def anchor_all(body, y, s):
-    """Note where the closed points are in the plan."""
+    """Note in s.anchor where the closed points are in the plan, (x, y) [m]: what sticks is put back there."""
     rows = algebra.rotation(y)
     for k in range(s.count):
         p = solid.position_of_base(y, rows, solid.arm(body, rows[2], s.closed[k]))
@@ -918,7 +1093,11 @@ def anchor_all(body, y, s):
 
 @kernel
 def settle(body, y, s):
-    """Put a state back on the conditions of its mode, from which steps drift by their error."""
+    """Put the state y back on the conditions of its mode, from which steps drift by their error.
+
+    Of a pivot or a hinge place and velocity follow from the attitude and the spin; what else is closed is moved to
+    the ground and stopped by what is least in kinetic energy.
+    """
     rows = algebra.rotation(y)
     kind = forces.kind_of(s)
     if kind in (forces.PIVOT, forces.HINGE):
@@ -927,8 +1106,9 @@ def settle(body, y, s):
         omega = solid.omega_of(y)
         if kind == forces.HINGE:
             q = solid.arm(body, rows[2], s.closed[1])
-            e = algebra.minus(q, p)
-            omega = algebra.scaled(algebra.dot(e, omega) / algebra.dot(e, e), e)
+            edge = algebra.minus(q, p)
+            part = algebra.dot(edge, omega) / algebra.dot(edge, edge)
+            omega = algebra.scaled(part, edge)
             y[10], y[11], y[12] = omega
         moved = algebra.to_world(rows, p)
         y[2] = -moved[2]
@@ -944,7 +1124,8 @@ def settle(body, y, s):
 def close_gaps(body, y, rows, s):
     """Move the body so that its closed points are on the ground, by what is least in its kinetic energy.
 
-    Of two points each is lifted as a vertical impulse there would: two equations with the compliances of both.
+    Of two points each is lifted as a vertical impulse there would: two equations W_nn P = -gap with the
+    compliances of both (``docs/space.md``, equation 10). A face is laid flat.
     """
     n = s.count
     if forces.at_wall(s):
@@ -970,10 +1151,11 @@ def close_gaps(body, y, rows, s):
 
 @kernel
 def close_gaps_at_wall(body, y, s):
-    """Move the body by what its closed points are off the ground and the walls.
+    """Move the body by what its closed points are off the ground and the walls, as impulses P there would.
 
-    Four contacts of an upright body may say one thing twice, and contradict each other by the errors of steps.  So
-    gaps are closed as by soft contacts, which do not move it far for that, and what this leaves of them once more.
+    Four contacts of an upright body may say one thing twice, and contradict each other by the errors of steps. So
+    the gaps are closed as by soft contacts, (W_nn + soft) P = -gap, W_nn the rows and columns 3 k + 2 of the
+    Delassus matrix, which do not move the body far for that; and what this leaves of the gaps twice more.
     """
     n = s.count
     for _ in range(CLOSINGS):
@@ -994,7 +1176,10 @@ def close_gaps_at_wall(body, y, s):
 
 @kernel
 def shift_at(body, y, rows, i, size):
-    """Displace the body as a small impulse would that the ground or the wall gives to contact i."""
+    """Displace the body as a small impulse at contact i, away from its surface, would in a unit of time.
+
+    ``size`` is that of the impulse for a unit of mass, in a unit of time a length [m].
+    """
     p = solid.arm(body, rows[2], i)
     push = algebra.scaled(size, forces.push_along(body, rows, i, 2))
     moved = algebra.to_world(rows, push)
@@ -1005,7 +1190,7 @@ def shift_at(body, y, rows, i, size):
 
 @kernel
 def lift_at(body, y, rows, i, size):
-    """Displace the body as a small vertical impulse at point i would."""
+    """Displace the body as a small vertical impulse at point i of the base would: see :func:`shift_at`."""
     p = solid.arm(body, rows[2], i)
     y[2] += size
     algebra.turn(

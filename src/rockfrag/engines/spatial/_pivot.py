@@ -5,6 +5,9 @@ follows from them, but for the way that a rim rolls.
 
 In: a state and a mode with one such contact. Out: the state at the end of a step, the force there and the error.
 Theory: ``docs/space.md``, equation 4.
+
+``turned``, shape (TURNING,), is what is integrated: quaternion, angular velocity in the body [rad/s], place in the
+plan [m] and work of the ground's motion [J/kg].
 """
 
 import math
@@ -27,6 +30,7 @@ from rockfrag.engines.spatial._algebra import (
     to_world,
 )
 from rockfrag.engines.spatial._forces import (
+    GRAVITY,
     STAGES,
     TURNING,
     effective_gravity_at,
@@ -39,7 +43,7 @@ ATTITUDE, SPIN, PLAN, WORK = 0, 4, 7, TURNING - 1
 
 @kernel
 def fill_turning(y, turned):
-    """Fill in what is integrated of a state: attitude, angular velocity, work, and the place in the plan."""
+    """Fill ``turned`` with what is integrated of a state y."""
     for i in range(4):
         turned[ATTITUDE + i] = y[solid.ATTITUDE + i]
     for i in range(3):
@@ -51,7 +55,11 @@ def fill_turning(y, turned):
 
 @kernel
 def turning_rates(body, tau, turned, slope, s):
-    """Fill in the rates of what :func:`fill_turning` names, and the force at the contact."""
+    """Fill ``slope`` with the rates of ``turned``; return the attitude, the force and the velocity.
+
+    Returned are the rows of R, the force at the contact [N/kg] and the velocity of the centre of mass [m/s], both
+    in the body. The contact is at rest, so that the velocity is p × ω, p its arm.
+    """
     w, x, i, z = turned[0], turned[1], turned[2], turned[3]
     omega = (turned[4], turned[5], turned[6])
     rows = rotation_of(w, x, i, z)
@@ -66,13 +74,13 @@ def turning_rates(body, tau, turned, slope, s):
     slope[3] = 0.5 * (w * omega[2] + x * omega[1] - i * omega[0])
     slope[4], slope[5], slope[6] = alpha
     slope[7], slope[8] = dot(rows[0], velocity), dot(rows[1], velocity)
-    slope[WORK] = dot(plus(weight, scaled(s.field[6], rows[2])), velocity)
+    slope[WORK] = dot(plus(weight, scaled(s.field[GRAVITY], rows[2])), velocity)
     return rows, force, velocity
 
 
 @kernel
 def begin(body, tau, y, s):
-    """Fill in the rates at the beginning of a step."""
+    """Fill s.turning[0] with the rates at the beginning of a step."""
     fill_turning(y, s.turned)
     turning_rates(body, tau, s.turned, s.turning[0], s)
 
@@ -86,7 +94,10 @@ def go_on(s):
 
 @kernel
 def attempt(body, tau, h, y, s):
-    """Step from y to s.new, with the force at the contact in s.lam; return the estimate of the error."""
+    """Step from y to s.new, with the force at the contact in s.lam; return the estimate of the error.
+
+    A step h [s] of Dormand and Prince's pair, of which every stage asks for :func:`turning_rates`.
+    """
     k, new = s.turning, s.turned
     fill_turning(y, s.turned_before)
     before = s.turned_before
@@ -113,7 +124,7 @@ def attempt(body, tau, h, y, s):
 
 @inlined_kernel
 def blend(k, before, h, stage, new):
-    """Fill in the state at which a stage of the step is looked at."""
+    """Fill ``new`` with the state at which a stage of the step h is looked at, from the rates k before it."""
     for i in range(TURNING):
         rate = WEIGHTS[stage, 0] * k[0, i]
         for early in range(1, stage):
@@ -123,7 +134,10 @@ def blend(k, before, h, stage, new):
 
 @kernel
 def write_state(body, y, rows, velocity, s):
-    """Write the state that belongs to attitude and angular velocity at the end of a step to s.new."""
+    """Write the state s.new that belongs to attitude and angular velocity at the end of a step.
+
+    ``velocity`` is that of the centre of mass in the body [m/s].
+    """
     new, turned = s.new, s.turned
     contact = s.closed[0]
     moved = to_world(rows, solid.arm(body, rows[2], contact))
@@ -147,7 +161,7 @@ def error_of(body, h, y, s):
     worst, weight = 0.0, solid.weight_of_attitude(body, y)
     p = solid.arm(body, rotation(y)[2], s.closed[0])
     for i in range(WORK):
-        scale = weight if i < 4 else 1.0 + abs(s.turned_before[i])
+        scale = weight if i < SPIN else 1.0 + abs(s.turned_before[i])
         worst = max(worst, abs(h * error_rate(s.turning, i)) / scale)
     # an error of a component of the quaternion is half of that of the attitude
     return worst * max(1.0, 2.0 * math.sqrt(dot(p, p)))

@@ -1,7 +1,12 @@
 """One step of Dormand and Prince's pair of order 5 (1980), and what must not become negative in it.
 
 In: a state and a mode. Out: the state at the end of a step, its error, and the first zero of what must stay
-positive. Theory: ``docs/space.md``, "Steps".
+positive. Theory: ``docs/space.md``, "Steps", and equation 23.
+
+- ``y``: the state at the beginning, ``s.new``: that at the end; ``tau``: time in the interval, ``h``: the step [s]
+- ``s.slopes``: rates at the stages of the step, (STAGES, 15); ``rows``: the world's axes as the body sees them
+- margins are gaps [m], normal forces and what cones leave [N/kg], or slips [m/s]: the sign of the least counts,
+  which is negative if any is
 """
 
 from rockfrag.engines.compile.jit import kernel
@@ -27,6 +32,11 @@ from rockfrag.engines.spatial._forces import (
     tie_margin,
 )
 
+# velocity below which an open point moves down, and not by rounding alone [m/s]
+DOWN = -1e-10
+ON_EDGE = 1e-12  # distance of the centre of pressure from the edge of a face that is rounding [m]
+# part of a step, times the change of velocity in it, by which a point may dip below the parabola of its velocities
+DEEPER = 0.02
 BACKWARD = 1e-8  # slip against its own direction that is rounding [m/s]
 NEAR_FLAT = 1e-6  # tilt below which a rim that rolls goes on to roll [rad]
 # over the weight that a contact may pull, or shear beyond its cone, unseen [-]
@@ -35,7 +45,7 @@ LEAST_FORCE = 1e-9
 
 @kernel
 def kind_of_step(body, s):
-    """Kind of a mode that has a step of its own: one contact or an edge that sticks, or else any other."""
+    """PIVOT or HINGE, modes with a step of their own if no wall or tie holds the body, or else GENERAL."""
     kind = forces.kind_of(s)
     own = kind in (forces.PIVOT, forces.HINGE) and body.constraints == 0
     return kind if own else forces.GENERAL
@@ -43,7 +53,7 @@ def kind_of_step(body, s):
 
 @kernel
 def begin(body, tau, y, s):
-    """Fill in the rates at the beginning of a step, unless they are those at the end of the last."""
+    """Fill in the rates at the beginning of a step, unless they are those at the end of the last (s.goes_on)."""
     kind = kind_of_step(body, s)
     if kind == forces.PIVOT:
         if s.goes_on:
@@ -62,7 +72,10 @@ def begin(body, tau, y, s):
 
 @kernel
 def attempt(body, tau, h, y, s):
-    """Step from y to s.new, with the forces in s.lam at its end; return the estimate of the error."""
+    """Step from y to s.new, with the forces in s.lam at its end; return the estimate of the error.
+
+    The error is the largest of the components, over their size [m, -, m/s, rad/s].
+    """
     kind = kind_of_step(body, s)
     if kind == forces.PIVOT:
         return pivot.attempt(body, tau, h, y, s)
@@ -87,7 +100,7 @@ def go_on_by(body, at, rest, tau, y, s):
 
 @kernel
 def attempt_any(body, tau, h, y, s):
-    """Step from y to s.new in any mode, with rates in s.slopes and forces in s.lam at its end; the error."""
+    """Step from y to s.new in any mode, with s.slopes, and the forces at its end in s.lam; return the error."""
     k, new = s.slopes, s.new
     for stage in range(1, STAGES):
         for i in range(solid.SIZE):
@@ -110,22 +123,25 @@ def attempt_any(body, tau, h, y, s):
 def error_of(body, h, y, s):
     """Largest component of the difference to the step of order 4, over its size."""
     worst, weight = 0.0, solid.weight_of_attitude(body, y)
-    for i in range(13):
-        scale = weight if 3 <= i < 7 else 1.0 + abs(y[i])
+    for i in range(solid.WORK):
+        scale = weight if solid.ATTITUDE <= i < solid.VELOCITY else 1.0 + abs(y[i])
         worst = max(worst, abs(h * error_rate(s.slopes, i)) / scale)
     return worst
 
 
 @kernel
 def slip_along(body, y, rows, i, s):
-    """Slip velocity of closed point i along a direction of the plan."""
+    """Slip of the i-th closed contact along its own direction of slip at the step's beginning, s.slip[i] [m/s].
+
+    It is negative once the contact slips back.
+    """
     u = slip_of(body, y, rows, i, s)
     return u[0] * s.slip[i, 0] + u[1] * s.slip[i, 1]
 
 
 @kernel
 def is_closed(s, i):
-    """Whether point i is closed in a mode."""
+    """Whether the contact of number i is closed in the mode."""
     found = False
     for k in range(s.count):
         found = found or s.closed[k] == i
@@ -134,7 +150,10 @@ def is_closed(s, i):
 
 @kernel
 def begin_slips(body, y, s):
-    """Note each sliding point's direction, and whether it is fast enough for its slip to end."""
+    """Fill s.slip with each sliding point's direction, and s.armed with whether its slip may end in the step.
+
+    It may if it is faster than twice the velocity at which slip ends.
+    """
     rows = rotation(y)
     for i in range(s.count):
         s.armed[i] = 0
@@ -150,7 +169,10 @@ def begin_slips(body, y, s):
 
 @kernel
 def face_slip(body, y, rows, s):
-    """By how much the fastest point of a face slips; one that has not begun to may not slip backwards [m/s]."""
+    """Margin of slip of a face [m/s]: by how much its fastest point is above the velocity at which slip ends.
+
+    Of one whose slip cannot end, as it has not begun to, it is by how much the fastest point slips forwards.
+    """
     fastest, forwards, armed = 0.0, -1.0, 0
     for i in range(s.count):
         u = slip_of(body, y, rows, i, s)
@@ -162,7 +184,7 @@ def face_slip(body, y, rows, s):
 
 @kernel
 def slides_flat(s):
-    """Whether a body slides on its face."""
+    """Whether a body slides on its face: three or more points of the ground are closed, and slide."""
     found = s.count >= 3 and not at_wall(s)
     for i in range(s.count):
         found = found and s.slides[i] == SLIDES
@@ -171,43 +193,44 @@ def slides_flat(s):
 
 @kernel
 def margin(body, y, s):
-    """Return the least of all that must not be negative, and what it belongs to."""
+    """Return the least of all that must not be negative in the state y, and what happens where it is.
+
+    Gaps [m], normal forces and cones [N/kg] and slips [m/s] are looked at together: where the least is negative,
+    the step has gone too far, whatever its unit.
+    """
     rows = rotation(y)
-    least, what = 1e300, modes.NOTHING
-    turns = cross(rows[2], solid.omega_of(y))
-    for i in solid.candidates(body):
-        if not is_closed(s, i):
-            p = solid.arm(body, rows[2], i)
-            value = y[2] + dot(rows[2], p) + 0.5 * modes.TOUCH
-            # an open point that moves down, and not by rounding alone
-            sinks = y[9] + dot(turns, p) < -1e-10
-            if value < 0.5 * modes.TOUCH and not sinks:
-                value += modes.TOUCH
-            if value < least:
-                least, what = value, modes.LANDS
-    for i in solid.wall_candidates(body):
-        if not solid.may_meet(body, i) or is_closed(s, i):
-            continue
-        value = solid.gap_of(body, y, rows, i) + 0.5 * modes.TOUCH
-        meets = solid.approach_of(body, y, rows, i) < -1e-10
-        if value < 0.5 * modes.TOUCH and not meets:
-            # what lies a little behind a wall, by the errors of steps, is pushed out as soon as it moves on
-            value = max(value + modes.TOUCH, 0.5 * modes.TOUCH)
-        if value < least:
-            least, what = value, modes.LANDS
-    small = LEAST_FORCE * s.field[6]
-    # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
-    passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
-    on_face = slides_flat(s)
-    if on_face:
+    least, what = open_margin(body, y, rows, s), modes.LANDS
+    if slides_flat(s):
         # where the centre of pressure leaves a face, it tips
-        value = modes.pressure_margin(body, s) + 1e-12
+        value = modes.pressure_margin(body, s) + ON_EDGE
         if value < least or not body.walls:
             least, what = value, modes.OPENS
         value = face_slip(body, y, rows, s)
         if value < least:
             least, what = value, modes.SLIP_ENDS
-    for i in range(0 if on_face else s.count):
+    else:
+        value, ends = closed_margin(body, y, rows, s)
+        if value < least:
+            least, what = value, ends
+    if body.constraints > 0:
+        value, tie = ties_margin(body, y, rows, s)
+        if value < least:
+            least, what = value, tie
+    return least, what
+
+
+@kernel
+def closed_margin(body, y, rows, s):
+    """Least margin of the closed contacts, and what happens where it is negative.
+
+    A contact opens where its normal force vanishes, slides where its shear reaches its cone [N/kg], and sticks
+    where its slip ends [m/s]. Slip that has not begun yet, which is not armed, may only go forwards.
+    """
+    least, what = modes.NO_LIMIT, modes.NOTHING
+    small = LEAST_FORCE * s.field[forces.GRAVITY]
+    # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
+    passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
+    for i in range(s.count):
         value = s.lam[i, 2] + small
         if value < least:
             least, what = value, modes.OPENS
@@ -224,17 +247,44 @@ def margin(body, y, s):
             value = grip * s.lam[i, 2] - norm(s.lam[i, 0], s.lam[i, 1]) + small
             if value < least:
                 least, what = value, modes.LEAVES_CONE
-    if body.constraints > 0:
-        value, tie = ties_margin(body, y, rows, s)
-        if value < least:
-            least, what = value, tie
     return least, what
 
 
 @kernel
+def open_margin(body, y, rows, s):
+    """Least gap of the open contacts, from half of TOUCH below the ground or the wall on [m].
+
+    A contact that is next to touch, but does not approach, has just parted: it is left alone until it is further
+    below.
+    """
+    least = modes.NO_LIMIT
+    turns = cross(rows[2], solid.omega_of(y))
+    for i in solid.candidates(body):
+        if not is_closed(s, i):
+            p = solid.arm(body, rows[2], i)
+            value = y[2] + dot(rows[2], p) + 0.5 * modes.TOUCH
+            sinks = y[9] + dot(turns, p) < DOWN
+            if value < 0.5 * modes.TOUCH and not sinks:
+                value += modes.TOUCH
+            if value < least:
+                least = value
+    for i in solid.wall_candidates(body):
+        if not solid.may_meet(body, i) or is_closed(s, i):
+            continue
+        value = solid.gap_of(body, y, rows, i) + 0.5 * modes.TOUCH
+        meets = solid.approach_of(body, y, rows, i) < DOWN
+        if value < 0.5 * modes.TOUCH and not meets:
+            # what lies a little behind a wall, by the errors of steps, is pushed out as soon as it moves on
+            value = max(value + modes.TOUCH, 0.5 * modes.TOUCH)
+        if value < least:
+            least = value
+    return least
+
+
+@kernel
 def ties_margin(body, y, rows, s):
-    """Least margin of the ties that have not broken, and whether that one breaks, or else turns taut or slack."""
-    least, what = 1e300, modes.NOTHING
+    """Least margin of the ties that have not broken [m], and whether that one breaks, or turns taut or slack."""
+    least, what = modes.NO_LIMIT, modes.NOTHING
     for i in range(body.constraints):
         if not body.ties[i] or s.broken[i]:
             continue
@@ -252,7 +302,7 @@ def ties_margin(body, y, rows, s):
 
 @kernel
 def dips(body, y, h, s):
-    """Whether a point that is open at both ends of a step may have touched inside it."""
+    """Whether a contact that is open at both ends of a step of h may have touched inside it."""
     new = s.new
     before, after = rotation(y), rotation(new)
     turns, turns_then = (
@@ -278,8 +328,12 @@ def dips(body, y, h, s):
 
 @kernel
 def touches_between(gap, sinking, rising, h):
-    """Whether a point that sinks at the beginning of a step and rises at its end may have touched inside it."""
+    """Whether a point may have touched inside a step of h that sinks at its beginning and rises at its end [m/s].
+
+    ``gap`` is that at the beginning [m]. Its least is that of the parabola of both velocities, less what it may
+    differ by (``docs/space.md``, equation 23).
+    """
     if not sinking < 0 < rising:
         return False
     lowest = gap - 0.5 * h * sinking**2 / (rising - sinking)
-    return lowest - 0.02 * h * (rising - sinking) < -0.5 * modes.TOUCH
+    return lowest - DEEPER * h * (rising - sinking) < -0.5 * modes.TOUCH

@@ -5,7 +5,11 @@ under a large coefficient of friction is stiff.  In short equal steps velocities
 that are near (Stewart and Trinkle 1996): none sinks further than its gap, friction within Coulomb's cone, found by
 Gauss-Seidel.  The method is of first order in the step and, within it, loses energy and never gains any.
 
-In: state and case at an instant of the interval. Out: both at its end. Theory: ``docs/space.md``, "Steps".
+In: state and case at an instant of the interval. Out: both at its end. Theory: ``docs/space.md``, equation 24.
+
+The n contacts that are near have the numbers s.near; ``k`` is a place there, ``i`` the number. Of each ``gives``
+is its own compliance along each axis [-], ``closes`` how fast it may approach, gap over step [m/s], ``shove`` its
+impulse [m/s]; axes 0 and 1 are along the contact, 2 is away from it.
 """
 
 from rockfrag.engines.compile.jit import kernel
@@ -23,7 +27,7 @@ SETTLED = 1e-9
 
 @kernel
 def pass_interval(body, tau, dt, y, s):
-    """Step to the end of an interval and choose the mode there; return the energy lost [J/kg]."""
+    """Step from ``tau`` to the end of an interval dt [s] and choose the mode; return the energy lost [J/kg]."""
     parts = 1 + int(PARTS * (dt - tau) / dt)
     h = (dt - tau) / parts
     s.goes_on = 0
@@ -31,10 +35,10 @@ def pass_interval(body, tau, dt, y, s):
     s.jammed = 0
     lost, n = 0.0, 0
     for part in range(parts):
-        before = solid.balance(body, y, s.field[6])
+        before = solid.balance(body, y, s.field[forces.GRAVITY])
         n = take_step(body, tau + part * h, h, y, s)
         lost += loss_since(body, before, y, s)
-    before = solid.balance(body, y, s.field[6])
+    before = solid.balance(body, y, s.field[forces.GRAVITY])
     close_pressed(body, y, n, s)
     if not modes.choose_mode(body, dt, y, s):
         modes.jam(body, y, s)
@@ -44,9 +48,9 @@ def pass_interval(body, tau, dt, y, s):
 @kernel
 def loss_since(body, before, y, s):
     """Take from the velocities what energy was gained since a balance; return what was lost [J/kg]."""
-    gained = solid.balance(body, y, s.field[6]) - before
-    solid.pay(body, y, gained, s.field[6])
-    return before - solid.balance(body, y, s.field[6])
+    gained = solid.balance(body, y, s.field[forces.GRAVITY]) - before
+    solid.pay(body, y, gained, s.field[forces.GRAVITY])
+    return before - solid.balance(body, y, s.field[forces.GRAVITY])
 
 
 @kernel
@@ -72,7 +76,7 @@ def take_step(body, tau, h, y, s):
     note_pushes(body, n, s)
     # of the ground's motion, in the effective gravity less gravity itself, and of ties
     y[solid.WORK] += h * (
-        load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[6]) * y[9]
+        load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[forces.GRAVITY]) * y[9]
     )
     y[solid.WORK] += h * algebra.dot(forces.twist_by_ties(s), solid.omega_of(y))
     for k in range(3):
@@ -84,7 +88,7 @@ def take_step(body, tau, h, y, s):
 
 @kernel
 def find_near(body, y, rows, h, s):
-    """Fill in the contacts that are near, and what each can do; return how many there are."""
+    """Fill in the contacts that are near, and what each can do in a step of h; return how many there are."""
     n = 0
     for k in range(solid.meetings(body)):
         n = add_near(body, y, rows, solid.meeting(body, k), n, h, s)
@@ -93,7 +97,12 @@ def find_near(body, y, rows, h, s):
 
 @kernel
 def add_near(body, y, rows, i, n, h, s):
-    """Add contact i to those that are near, if it is and there is room; return how many there are."""
+    """Add contact i to those that are near, if it is and there is room; return how many there are.
+
+    Of each are kept its number (``near``), its coefficient of friction (``rubs``), how fast it may close in the
+    step (``closes``), and by how much a unit impulse along each of its axes changes the velocity along that axis
+    (``gives``), which is all that Gauss and Seidel's method asks for; its impulse (``shove``) begins at none.
+    """
     gap = solid.gap_of(body, y, rows, i)
     if gap > NEAR or n == forces.MOST_NEAR:
         return n
@@ -105,15 +114,18 @@ def add_near(body, y, rows, i, n, h, s):
     for axis in range(3):
         push = forces.push_along(body, rows, i, axis)
         p = solid.arm(body, rows[2], i)
-        u = solid.in_frame(body, i, forces.response(body, rows, p, p, push))
-        s.gives[n, axis] = u[axis]
+        answer = solid.in_frame(body, i, forces.response(body, rows, p, p, push))
+        s.gives[n, axis] = answer[axis]
         s.shove[n, axis] = 0.0
     return n + 1
 
 
 @kernel
 def sweep(body, y, rows, n, s):
-    """Correct the impulse of each near contact once; return the largest change of a velocity."""
+    """Correct the impulse of each near contact once, and the velocities in y with it (equation 24).
+
+    Returned is the largest change of a contact's velocity [m/s].
+    """
     worst = 0.0
     for k in range(n):
         i = s.near[k]
@@ -124,6 +136,8 @@ def sweep(body, y, rows, n, s):
         forces.push_at(body, y, rows, i, (0.0, 0.0, change))
         worst = max(worst, abs(change) * s.gives[k, 2])
         u = solid.in_frame(body, i, solid.velocity_of(body, y, rows, i))
+        # one compliance for both axes along the contact: the larger one, which corrects too little rather than
+        # much
         soft = max(s.gives[k, 0], s.gives[k, 1])
         a, b = s.shove[k, 0] - u[0] / soft, s.shove[k, 1] - u[1] / soft
         shear, limit = algebra.norm(a, b), s.rubs[k] * normal
@@ -140,9 +154,9 @@ def sweep(body, y, rows, n, s):
 def put_in_place(body, y, n, s):
     """Move the body by little, so that near contacts that were pressed touch and no other lies behind its wall.
 
-    Velocities at the end of a step leave gaps of what the body turns in it, squared.  They are closed as impulses
+    Velocities at the end of a step leave gaps of what the body turns in it, squared. They are closed as impulses
     are found, one after the other: where gaps contradict each other, as of four contacts of a body that is wedged,
-    equations for all at once would move it far.
+    equations for all at once would move it far. s.moved has by how much each was moved, as an impulse [m].
     """
     for k in range(n):
         s.moved[k] = 0.0
@@ -165,7 +179,7 @@ def put_in_place(body, y, n, s):
 
 @kernel
 def note_pushes(body, n, s):
-    """Keep the largest impulse of each wall in a step."""
+    """Keep the largest impulse of each wall in a step [m/s]."""
     for w in range(body.constraints):
         whole = 0.0
         for k in range(n):
@@ -176,7 +190,7 @@ def note_pushes(body, n, s):
 
 @kernel
 def close_pressed(body, y, n, s):
-    """Close the contacts that were pressed in the last step, at most MOST."""
+    """Close the contacts that were pressed in the last step, at most MOST, as ones that slide."""
     s.count = 0
     for k in range(n):
         if s.shove[k, 2] > 0.0 and s.count < forces.MOST:

@@ -2,8 +2,17 @@
 
 They are nearly all there are.  What they are not goes to the one problem of cones (``_cone``).
 
-In: a state and the one or two points that push. Out: impulses a unit of mass [m/s], or nothing if it is another
-case. Theory: ``docs/space.md``, equation 4.
+In: a state and the n contacts ``s.which`` of a small system, those that touch. Out: impulses a unit of mass [m/s],
+or nothing if it is another case. Theory: ``docs/space.md``, "Derivations", equations 11 to 13.
+
+Names, all vectors in the body but those of the record ``s``:
+
+- ``i``, ``j``, ``k``: places in s.which; ``up``: the vertical, ``rows[2]``
+- ``s.load``: velocity of a contact but for rotation before the impulse, b of equation 11 [m/s]; of a change of
+  mode accelerations stand in the place of velocities, and forces in that of impulses
+- ``moment``: angular momentum before, L of equation 11 [m²/s], or the moment without contact forces [m²/s²]
+- ``turn``: angular velocity after [rad/s]; ``push``: impulse of all contacts together [m/s]
+- ``small``: a velocity that is rounding [m/s]
 """
 
 import math
@@ -11,6 +20,7 @@ import math
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial._algebra import (
+    TINY,
     cross,
     dot,
     minus,
@@ -24,18 +34,23 @@ from rockfrag.engines.spatial._forces import stop_edge, stop_point, twist_by_tie
 
 NOTHING = (0.0, 0.0, 0.0)
 ROUNDING = 1e-11  # speed over the largest one to stop below which a contact does not approach [-]
+ON_CONE = 1e-12  # shear beyond a cone, over its limit, that is rounding [-]
 EQUAL = 1e-12  # difference of work, over the square of that speed, below which sets do equally well [-]
 
 
 @kernel
 def load_of(s, k):
-    """Velocity of contact k of a small system but for rotation, in the body."""
+    """Velocity of contact k of a small system but for rotation, in the body [m/s]."""
     return (s.load[k, 0], s.load[k, 1], s.load[k, 2])
 
 
 @kernel
 def fill_velocities(body, y, rows, n, s):
-    """Fill in how the contacts s.which move before an impact; return the angular momentum."""
+    """Fill s.load and s.free with how the n contacts s.which move before an impact; return the angular momentum.
+
+    s.load is in the body, s.free in axes of the ground, three components a contact [m/s]; the angular momentum, J
+    ω over the mass, is in the body [m²/s].
+    """
     omega = solid.omega_of(y)
     velocity = to_body(rows, (y[7], y[8], y[9]))
     for k in range(n):
@@ -46,10 +61,11 @@ def fill_velocities(body, y, rows, n, s):
 
 @kernel
 def fill_accelerations(body, y, rows, weight, n, s):
-    """Fill in how the contacts s.which accelerate without forces; return the moment that turns the body.
+    """Fill in how the n contacts s.which accelerate without forces; return the moment that turns the body.
 
     ``s.load`` gets the acceleration of each but for the body's own, in the body, ``s.free`` all of it, in axes of
-    the ground.
+    the ground [m/s²]. ``weight`` is the effective gravity and the force of ties, in the body [N/kg]; the moment is
+    that of ties and the gyroscopic one [N m/kg].
     """
     omega = solid.omega_of(y)
     moment = minus(twist_by_ties(s), cross(omega, times(body.inertia, omega)))
@@ -64,7 +80,7 @@ def fill_accelerations(body, y, rows, weight, n, s):
 
 @kernel
 def fill_free(body, rows, k, spin, s):
-    """Fill in the velocity of contact k in the world."""
+    """Fill s.free, from 3 k on, with the velocity of contact k in axes of the ground; ``spin`` is ω."""
     p = solid.arm(body, rows[2], s.which[k])
     free = to_world(rows, plus(load_of(s, k), cross(spin, p)))
     s.free[3 * k], s.free[3 * k + 1], s.free[3 * k + 2] = free
@@ -72,7 +88,7 @@ def fill_free(body, rows, k, spin, s):
 
 @kernel
 def upward_speed(body, up, k, turn, push, s):
-    """Velocity upwards of contact k after an impulse that leaves the body turning with ``turn``."""
+    """Velocity upwards of contact k after the impulse ``push`` that leaves the body with ``turn`` [m/s]."""
     p = solid.arm(body, up, s.which[k])
     after = plus(plus(load_of(s, k), push), cross(turn, p))
     return dot(up, after)
@@ -80,7 +96,11 @@ def upward_speed(body, up, k, turn, push, s):
 
 @kernel
 def others_stay_out(body, up, n, i, j, turn, push, small, s):
-    """Whether no contact but i and j (-1: none) approaches the ground after the impulse of these two."""
+    """Whether no contact but i and j (-1: none) approaches the ground after the impulse ``push`` of these two.
+
+    ``turn`` is the angular velocity after it. What approaches more slowly than ``small`` does not count; a
+    velocity that is no number does.
+    """
     for k in range(n):
         stops = k in (i, j)
         if not stops and not upward_speed(body, up, k, turn, push, s) >= -small:
@@ -90,15 +110,19 @@ def others_stay_out(body, up, n, i, j, turn, push, small, s):
 
 @kernel
 def within_cone(up, push, friction, small):
-    """Whether an impulse, in the body, pushes and is within its cone."""
+    """Whether an impulse pushes and is within the cone of a coefficient of friction, up to ``small``."""
     normal = dot(up, push)
     shear = math.sqrt(max(dot(push, push) - normal * normal, 0.0))
-    return normal >= -small and shear <= friction * normal * (1 + 1e-12) + small
+    return normal >= -small and shear <= friction * normal * (1 + ON_CONE) + small
 
 
 @kernel
 def room_along(up, push, along, friction):
-    """Impulse along an edge that one of its ends can bear beside what it bears across it."""
+    """Impulse along an edge that one of its ends can bear beside what it bears across it [m/s].
+
+    ``push`` is the impulse of the end, ``along`` its part along the edge. The room is √(µ² N² - P⊥²), s of
+    equation 13 (``docs/space.md``).
+    """
     normal = dot(up, push)
     across = dot(push, push) - normal * normal - along * along
     return math.sqrt(max((friction * normal) ** 2 - max(across, 0.0), 0.0))
@@ -106,11 +130,20 @@ def room_along(up, push, along, friction):
 
 @kernel
 def split_along(up, first, second, e, friction_first, friction_second):
-    """Share the impulse of an edge along it so that both ends' cones hold, if they can."""
+    """Split the impulse of an edge along it so that both ends' cones hold, if they can (equation 13).
+
+    ``first`` and ``second`` are the impulses of the ends in the body and ``e`` the unit vector along the edge;
+    only their sum along e is given. Returned are the two impulses with parts along e that are in proportion to
+    what each cone leaves.
+    """
     near, far = dot(first, e), dot(second, e)
-    a = room_along(up, first, near, friction_first)
-    b = room_along(up, second, far, friction_second)
-    part = 0.5 if a + b == 0.0 else a / (a + b)
+    room_first = room_along(up, first, near, friction_first)
+    room_second = room_along(up, second, far, friction_second)
+    part = (
+        0.5
+        if room_first + room_second == 0.0
+        else room_first / (room_first + room_second)
+    )
     along = near + far
     return (
         plus(first, scaled(part * along - near, e)),
@@ -120,8 +153,8 @@ def split_along(up, first, second, e, friction_first, friction_second):
 
 @kernel
 def speed_to_stop(s, n):
-    """Largest velocity (or acceleration) that there is to stop."""
-    scale = 1e-300
+    """Largest component of the velocities that there is to stop [m/s], or of accelerations [m/s²]."""
+    scale = TINY
     for i in range(3 * n):
         scale = max(scale, abs(s.free[i]))
     return scale
@@ -129,7 +162,10 @@ def speed_to_stop(s, n):
 
 @kernel
 def keep(rows, n, i, j, first, second, s):
-    """Write the impulses of contacts i and j into s.impulse, those of all others are none."""
+    """Write the impulses of contacts i and j, in the body, to s.impulse, in axes of the ground; others get none.
+
+    A contact -1 is none.
+    """
     for k in range(3 * n):
         s.impulse[k] = 0.0
     if i >= 0:
@@ -142,7 +178,7 @@ def keep(rows, n, i, j, first, second, s):
 
 @kernel
 def fill_after(body, rows, n, turn, push, s):
-    """Fill in the velocities of all contacts after the impulse."""
+    """Fill s.after with the velocities of all n contacts after an impulse, in axes of the ground [m/s]."""
     for k in range(n):
         p = solid.arm(body, rows[2], s.which[k])
         after = to_world(rows, plus(plus(load_of(s, k), push), cross(turn, p)))
@@ -151,7 +187,10 @@ def fill_after(body, rows, n, turn, push, s):
 
 @kernel
 def work_of(rows, k, push, s):
-    """Twice the kinetic energy that an impulse at contact k takes by stopping it, with its sign."""
+    """Twice the kinetic energy that an impulse at contact k takes by stopping it, as a negative number [J/kg].
+
+    After the impulse the contact is at rest, so that twice the change is P·(b + 0).
+    """
     p = to_world(rows, push)
     return p[0] * s.free[3 * k] + p[1] * s.free[3 * k + 1] + p[2] * s.free[3 * k + 2]
 
@@ -160,7 +199,7 @@ def work_of(rows, k, push, s):
 def stick_alone_or_by_two(body, rows, n, least, moment, s):
     """Find the fewest contacts, none, one or two, that stick while no other approaches, as ``_cone.fewest`` does.
 
-    Of sets of one size the one is taken that takes most kinetic energy away.  ``moment`` is what
+    Of sets of one size the one is taken that takes most kinetic energy away. ``moment`` is what
     :func:`fill_velocities` or :func:`fill_accelerations` returned; no set of fewer than ``least`` is looked for.
     Returned are the set as bits (-1 if there is none) and how many of its size would do; ``s.impulse`` and
     ``s.after`` have the impulses and the velocities after them.
@@ -173,8 +212,25 @@ def stick_alone_or_by_two(body, rows, n, least, moment, s):
         keep(rows, n, -1, -1, NOTHING, NOTHING, s)
         fill_after(body, rows, n, spin, NOTHING, s)
         return 0, 1
+    chosen, solutions = stick_alone(body, rows, n, moment, small, equal_work, s)
+    if chosen < 0:
+        chosen, solutions = stick_by_two(body, rows, n, moment, small, equal_work, s)
+    for k in range(n if chosen >= 0 else 0):
+        # all had the friction of what has not slipped
+        s.grip[k] = s.holds[k]
+    return chosen, solutions
+
+
+@kernel
+def stick_alone(body, rows, n, moment, small, equal_work, s):
+    """Find the contact that sticks alone while no other approaches, and takes most kinetic energy away.
+
+    Works that differ by no more than ``equal_work`` [J/kg] are equal: the first one is taken. In and out are as in
+    :func:`stick_alone_or_by_two`.
+    """
+    up = rows[2]
     chosen, solutions, lowest = -1, 0, 0.0
-    best_turn, best_push = spin, NOTHING
+    best_turn, best_push = NOTHING, NOTHING
     for i in range(n):
         turn, push = stop_point(body, up, s.which[i], load_of(s, i), moment)
         if not within_cone(up, push, s.holds[i], small):
@@ -187,12 +243,26 @@ def stick_alone_or_by_two(body, rows, n, least, moment, s):
             chosen, lowest = 1 << i, change
             best_turn, best_push = turn, push
             keep(rows, n, i, -1, push, NOTHING, s)
-    for j in range(n if chosen < 0 else 0):
+    if chosen >= 0:
+        fill_after(body, rows, n, best_turn, best_push, s)
+    return chosen, solutions
+
+
+@kernel
+def stick_by_two(body, rows, n, moment, small, equal_work, s):
+    """Find the two contacts that stick while no other approaches, and take most kinetic energy away.
+
+    In and out are as in :func:`stick_alone`.
+    """
+    up = rows[2]
+    chosen, solutions, lowest = -1, 0, 0.0
+    best_turn, best_push = NOTHING, NOTHING
+    for j in range(n):
         for i in range(j):
             turn, push, near, far, holds = hold_edge(body, up, i, j, moment, small, s)
-            if not holds or not others_stay_out(
-                body, up, n, i, j, turn, push, small, s
-            ):
+            if not holds:
+                continue
+            if not others_stay_out(body, up, n, i, j, turn, push, small, s):
                 continue
             solutions += 1
             change = work_of(rows, i, near, s) + work_of(rows, j, far, s)
@@ -202,16 +272,16 @@ def stick_alone_or_by_two(body, rows, n, least, moment, s):
                 keep(rows, n, i, j, near, far, s)
     if chosen >= 0:
         fill_after(body, rows, n, best_turn, best_push, s)
-        for k in range(n):
-            s.grip[k] = s.holds[k]
     return chosen, solutions
 
 
 @kernel
 def hold_edge(body, up, i, j, moment, small, s):
-    """Stop contacts i and j: angular velocity after it, impulses of both and of each, and whether friction can.
+    """Stop contacts i and j (``docs/space.md``, equations 12 and 13).
 
-    What pushes along the edge between them may act at either, and is shared so that friction holds at both.
+    Returned are the angular velocity after it; the impulse of both together, of i and of j; and whether both can
+    be stopped, and friction holds at both. What acts along the edge between them is split so that it does, if it
+    can.
     """
     turn, push, far, e, fits = stop_edge(
         body,

@@ -1,7 +1,10 @@
 """Bodies as the kernels know them, made of a system of one body in space.
 
 In: a :class:`rockfrag.system.system.System` of one body. Out: its record ``BODY`` and the state in which it
-stands. Theory: ``docs/space.md``, "Coordinates".
+stands. Theory: ``docs/space.md``, "Coordinates"; walls, ties and bonds: ``docs/holding.md``.
+
+A system has its bodies in the frame of their base, with z up from it [m, kg, N]. A record has the origin at the
+centre of mass, and all that has a mass is for a unit of it.
 """
 
 import math
@@ -12,8 +15,11 @@ import numpy as np
 from rockfrag.base.arrays import Floats, with_attributes
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
+from rockfrag.engines.spatial._algebra import TINY
 from rockfrag.engines.spatial._body import (
+    ATTITUDE,
     BODY,
+    HEIGHT,
     MOST_CONSTRAINTS,
     MOST_VERTICES,
     SIZE,
@@ -33,8 +39,25 @@ NEVER_SLIDES = 20.0
 
 
 def kernel_body(system: System, g: float = GRAVITY) -> np.void:
-    """Return the one body in space of a system, and its contact with the ground, as the kernels know it."""
+    """Return the one body in space of a system, and its contact with the ground, as the kernels know it.
+
+    Parameters
+    ----------
+    system : of one body, with its contact, walls, ties and bond
+    g : acceleration of gravity [m/s²]
+
+    Returns
+    -------
+    A record ``BODY``.
+
+    Raises
+    ------
+    InputError
+        for a base of too many vertices, a centre of mass that is not above it, too many walls and ties, or a wall
+        where the body stands
+    """
     given, contact = system.bodies[0], system.contacts[0]
+    # where the centre of mass is in the plan of the base: the origin of the record
     base, below = given.base, np.array(given.centre[:2])
     made = np.zeros(1, BODY)
     body: np.void = made[0]
@@ -69,7 +92,10 @@ def kernel_body(system: System, g: float = GRAVITY) -> np.void:
 
 
 def acting(system: System) -> list[int]:
-    """Return which constraints of a system may ever act: walls and ties within reach, by their numbers."""
+    """Return which constraints of a system may ever act, walls and ties within reach, by their numbers.
+
+    The record has them in this order.
+    """
     reach = [
         each.distance if isinstance(each, Wall) else each.slack
         for each in system.constraints
@@ -78,7 +104,7 @@ def acting(system: System) -> list[int]:
 
 
 def _fill_constraints(body: np.void, system: System) -> None:
-    """Describe walls and ties."""
+    """Fill the fields of all walls and ties that may act."""
     given, known = system.bodies[0], acting(system)
     if len(known) > MOST_CONSTRAINTS:
         raise InputError(
@@ -95,7 +121,7 @@ def _fill_constraints(body: np.void, system: System) -> None:
 
 
 def _fill_wall(body: np.void, i: int, given: RigidBody, wall: Wall) -> None:
-    """Describe a wall, and the corners that may meet it."""
+    """Fill the fields of wall i, and the corners of the body that may meet it."""
     corners = _corners(given)
     body["walls"] = 1
     body["corners"], body["corner"][: len(corners)] = len(corners), corners
@@ -124,7 +150,7 @@ def _corners(given: RigidBody) -> Floats:
 
 
 def _fill_bond(body: np.void, given: RigidBody, bond: Bond) -> None:
-    """Describe a bond under a body, for a unit of mass."""
+    """Fill the fields of a bond under a body: capacities for a unit of mass [N/kg], and where its pads are [m]."""
     body["bonded"], body["pads"] = 1, bond.pads
     body["tension"], body["shear"] = bond.tension / given.mass, bond.shear / given.mass
     # the pads lie around the origin of the base
@@ -132,7 +158,11 @@ def _fill_bond(body: np.void, given: RigidBody, bond: Bond) -> None:
 
 
 def _fill_tie(body: np.void, i: int, given: RigidBody, tie: Tie) -> None:
-    """Describe a tie, for a unit of mass; the body's centre of mass stands over the origin of the ground."""
+    """Fill the fields of tie i, for a unit of mass.
+
+    The body's centre of mass stands over the origin of the ground at first. A bracket pushes too; a cord does not,
+    which a least length of 0 says.
+    """
     x, y, _ = given.centre
     knot, anchor = np.array(tie.point), np.array(tie.anchor)
     length = float(np.linalg.norm(anchor - knot))
@@ -147,21 +177,45 @@ def _fill_tie(body: np.void, i: int, given: RigidBody, tie: Tie) -> None:
     body["strength"][i] = tie.strength / given.mass
     body["natural"][i] = length + tie.slack
     if tie.bracket:
-        body["shortest"][i] = max(length - tie.slack, 1e-300)
+        # above 0, whatever its slack, as a bracket
+        body["shortest"][i] = max(length - tie.slack, TINY)
 
 
 def standing(body: np.void, turned: float = 0.0) -> Floats:
-    """Return the state of a body that stands at rest over the origin, turned about the vertical [rad]."""
+    """Return the state of a body that stands at rest over the origin.
+
+    Parameters
+    ----------
+    body : record ``BODY``
+    turned : about the vertical, anticlockwise as seen from above [rad]
+
+    Returns
+    -------
+    State, shape (SIZE,): see ``_body``.
+    """
     y = np.zeros(SIZE)
-    y[2] = body["height"]
-    y[3], y[6] = math.cos(turned / 2), math.sin(turned / 2)
+    y[HEIGHT] = body["height"]
+    # quaternion of a turn about z
+    y[ATTITUDE], y[ATTITUDE + 3] = math.cos(turned / 2), math.sin(turned / 2)
     return y
 
 
 def perturbed(
     system: System, spread: float, rng: np.random.Generator
 ) -> tuple[System, float]:
-    """Return a body with its base moved by up to ``spread`` of its extent, and a turn within that angle [rad]."""
+    """Return a body with an imperfect base, and a turn about the vertical: both drawn evenly.
+
+    Parameters
+    ----------
+    system : of one body
+    spread : by which each vertex, or the centre of a circle, is moved at most along each axis, over the width of
+        the base [-]; and by which the body is turned at most [rad]
+    rng : that draws
+
+    Returns
+    -------
+    The system with the moved base, and the turn [rad].
+    """
     body = system.bodies[0]
     if isinstance(body.base, Circle):
         x, y = rng.uniform(-spread, spread, 2) * 2 * body.base.radius

@@ -20,7 +20,13 @@ from rockfrag.engines.compile.jit import compiling_alone
 from rockfrag.engines.contract import Case, Cases, Request
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _modes as modes
-from rockfrag.engines.spatial._body import BOND
+from rockfrag.engines.spatial._body import (
+    ATTITUDE,
+    BOND,
+    FRICTION,
+    PLACE,
+    SPIN,
+)
 from rockfrag.engines.spatial._forces import CASE
 from rockfrag.engines.spatial.body import (
     acting,
@@ -39,7 +45,6 @@ TOLERANCE = 1e-8
 # energy over rest, as a part of what a fall takes, at which a body rests [-]
 CUT_OFF = 1e-6
 AFTER = 30.0  # time after the motion at which an analysis ends at the latest [s]
-RESTS = 99
 
 
 @dataclass(frozen=True)
@@ -115,6 +120,14 @@ def run(cases: Cases) -> Outcomes:
 
     Of a base that is spread each vertex is moved, and the body turned, anew for each system and motion: an ideal
     base has outcomes that no real one has.
+
+    Parameters
+    ----------
+    cases : systems of one body each, motions with all components, scales of each motion
+
+    Returns
+    -------
+    Outcomes, shape (systems, motions, scales), in which the quantities of bodies have one body.
     """
     result = empty_outcomes(
         cases.names, cases.scales, [ENGINE.name], holding=cases.holding
@@ -146,7 +159,7 @@ def run(cases: Cases) -> Outcomes:
 
 
 def _as_given(system: System, g: float) -> tuple[np.void, Floats]:
-    """Record of the body of a system for the kernel, and the state in which it stands, shape (SIZE,)."""
+    """Record ``BODY`` of the body of a system for the kernel, and the state in which it stands, shape (SIZE,)."""
     body = kernel_body(system, g)
     return body, standing(body)
 
@@ -154,7 +167,10 @@ def _as_given(system: System, g: float) -> tuple[np.void, Floats]:
 def _spread(
     system: System, request: Request, place: tuple[int, int]
 ) -> tuple[np.void, Floats]:
-    """Record and state likewise, with vertices moved and the body turned; the place in a grid numbers the draw."""
+    """Record and state as :func:`_as_given`, with vertices moved and the body turned.
+
+    The request has the spread and a seed; ``place``, of the system and the motion in a grid, numbers the draw.
+    """
     rng = np.random.default_rng([request.seed, *place])
     moved, turned = perturbed(system, request.spread, rng)
     body = kernel_body(moved, request.g)
@@ -162,7 +178,16 @@ def _spread(
 
 
 def history(case: Case) -> SpatialResponse:
-    """Return outcome and history of a case that it supports; a spread is that of the first case of a grid."""
+    """Return outcome and history of a case that it supports; a spread is that of the first case of a grid.
+
+    Parameters
+    ----------
+    case : a system of one body, a motion with all components, a scale
+
+    Returns
+    -------
+    Outcome, a table of samples until 30 s after the motion at most, and the outline of the base.
+    """
     g = case.request.g
     body, start = _as_given(case.system, g)
     if case.request.spread > 0:
@@ -194,10 +219,22 @@ def run_case(
     tolerance: float = TOLERANCE,
     start: Floats | None = None,
 ) -> tuple[SpatialOutcome, Floats]:
-    """Integrate one analysis; the outcome, and the history, shape (m, COLUMNS), of at most so many samples.
+    """Integrate one analysis of a body.
 
-    ``acceleration`` is the ground's (x, y, up), shape (n, 3) [m/s²], and ``start`` a
-    state to begin with, shape (SIZE,).
+    Parameters
+    ----------
+    body : record ``BODY``
+    acceleration : of the ground (x, y, up), shape (n, 3) [m/s²]
+    dt : interval of its samples [s]
+    scale : that it is multiplied by [-]
+    g : acceleration of gravity [m/s²]
+    samples : of the history at most
+    tolerance : error of a step [m, -, m/s, rad/s]
+    start : state to begin with, shape (SIZE,); None: standing over the origin
+
+    Returns
+    -------
+    The outcome, and the history, shape (m, COLUMNS): m is ``samples`` at most.
     """
     history = np.full((samples, kernel.COLUMNS), math.nan)
     found = run_scales(
@@ -234,7 +271,11 @@ def run_scales(
     start: Floats | None = None,
     history: Floats | None = None,
 ) -> Found:
-    """Integrate one analysis a scale, all from the same state; arguments are those of :func:`run_case`."""
+    """Integrate one analysis a scale, all from the same state; other arguments are those of :func:`run_case`.
+
+    ``scales`` has the shape (scales,) [-]; ``history`` takes the samples of the last one, shape (samples,
+    COLUMNS).
+    """
     acceleration = np.ascontiguousarray(acceleration)
     peaks = np.empty((len(acceleration), 4))
     begins = standing(body) if start is None else start
@@ -257,7 +298,7 @@ def run_scales(
 def _outcome(
     body: np.void, out: Floats, counters: NDArray[np.int64], y: Floats
 ) -> SpatialOutcome:
-    """An outcome by names, of what the kernel left in its row and its counters."""
+    """An outcome by names, from what the kernel left: a row (OUTCOME,), its counters and the last state."""
     fell = bool(out[kernel.FELL])
     return SpatialOutcome(
         overturned=fell,
@@ -274,7 +315,7 @@ def _outcome(
         flights=int(counters[modes.FLIGHTS]),
         ambiguous=int(counters[modes.AMBIGUOUS]),
         paradoxes=int(counters[modes.UNSOLVED] + counters[modes.JAMS]),
-        dissipated=(float(out[kernel.LOST]), float(y[14])),
+        dissipated=(float(out[kernel.LOST]), float(y[FRICTION])),
         residual=float(out[kernel.ENERGY_BALANCE]),
         gained=float(out[kernel.GAINED]),
         beyond_friction=float(out[kernel.BEYOND]),
@@ -282,7 +323,10 @@ def _outcome(
 
 
 def _named(body: np.void, out: Floats) -> str:
-    """Say over what a body fell."""
+    """Say over what a body fell: "edge 1-2", "vertex 2", "rim", or "flight" if it did not touch the ground.
+
+    Vertices are numbered from 1, in the order of the base.
+    """
     first, second = int(out[kernel.FALL_FIRST]), int(out[kernel.FALL_SECOND])
     if first < 0:
         return "flight"
@@ -295,23 +339,37 @@ def _named(body: np.void, out: Floats) -> str:
 
 
 def history_table(history: Floats, dt: float, height: float) -> pd.DataFrame:
-    """Return a history of :func:`run_case` as the table of a :class:`rockfrag.engines.spatial.SpatialResponse`."""
-    w, x, y, z = history[:, 3:7].T
+    """Return a history of :func:`run_case` as the table of a :class:`rockfrag.engines.spatial.SpatialResponse`.
+
+    Parameters
+    ----------
+    history : shape (samples, COLUMNS)
+    dt : interval of the samples [s]
+    height : of the centre of mass over the base [m]
+
+    Returns
+    -------
+    A row a sample, columns as the class names them.
+    """
+    w, x, y, z = history[:, ATTITUDE : ATTITUDE + 4].T
+    # the body's z axis in axes of the ground, from the quaternion
     axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
-    closed = np.where(history[:, 14] == RESTS, math.nan, history[:, 14])
+    place = history[:, PLACE : PLACE + 3]
+    count = history[:, kernel.COUNT]
+    closed = np.where(count == kernel.RESTS, math.nan, count)
     return pd.DataFrame(
         {
             "time_s": np.arange(len(history)) * dt,
-            **dict(zip(("x_m", "y_m", "z_m"), history[:, :3].T, strict=True)),
+            **dict(zip(("x_m", "y_m", "z_m"), place.T, strict=True)),
             "tilt_rad": np.arctan2(np.hypot(axis[0], axis[1]), axis[2]),
             "axis_x": axis[0],
             "axis_y": axis[1],
-            "turn_rad": history[:, 13],
-            "base_x_m": history[:, 0] - height * axis[0],
-            "base_y_m": history[:, 1] - height * axis[1],
+            "turn_rad": history[:, kernel.TURNED],
+            "base_x_m": place[:, 0] - height * axis[0],
+            "base_y_m": place[:, 1] - height * axis[1],
             **{
-                f"omega_{axis}_rad_s": history[:, 10 + k]
-                for k, axis in enumerate("xyz")
+                f"omega_{name}_rad_s": history[:, SPIN + k]
+                for k, name in enumerate("xyz")
             },
             "contacts": closed,
         }
@@ -321,7 +379,10 @@ def history_table(history: Floats, dt: float, height: float) -> pd.DataFrame:
 def _write(
     result: Outcomes, case: tuple[int, int], body: np.void, found: Found
 ) -> None:
-    """Write the outcomes of a body under a motion, at all scales, into those of all."""
+    """Write the outcomes of a body under a motion, at all scales, into those of all.
+
+    ``case`` is the place of the system and the motion in the grid.
+    """
     outs, counts = found.outs, found.counts
     fell = outs[:, kernel.FELL] > 0
     result.overturned[case], result.overturned_body[case] = fell, fell
@@ -346,13 +407,19 @@ def _write(
 def _write_holding(
     result: Outcomes, case: tuple[int, int], system: System, found: Found
 ) -> None:
-    """Write what held a body had to bear under a motion, at all scales, into the outcomes of all."""
+    """Write what held a body had to bear under a motion, at all scales, into the outcomes of all.
+
+    The kernel numbers what may act, see :func:`acting`, and a bond behind it, for a unit of mass; outcomes have a
+    row a constraint of the system, and one of its bond, in N s and N.
+    """
     rows = {row: holder for holder, row in enumerate(acting(system))}
     if system.bonds:
         rows[len(system.constraints)] = BOND
     mass = system.bodies[0].mass
     for row, holder in rows.items():
-        hits, impact, force, breaks = found.outs[:, kernel.HELD + 4 * holder :].T[:4]
+        first = kernel.HELD + kernel.OF_HOLDER * holder
+        of_holder = found.outs[:, first : first + kernel.OF_HOLDER]
+        hits, impact, force, breaks = of_holder.T
         result.hits[case][:, row] = hits
         result.largest_impulse[case][:, row] = mass * impact
         result.largest_force[case][:, row] = mass * force

@@ -2,6 +2,9 @@
 
 In: outcome and history of one analysis, and the outline of the base [m]. Out: a matplotlib figure. What is drawn
 are the coordinates of ``docs/space.md``, "Coordinates".
+
+The history is the table of :class:`rockfrag.engines.spatial.SpatialResponse`: its columns ``axis_x``, ``axis_y``
+and ``tilt_rad`` say how the axis leans, ``base_x_m``, ``base_y_m`` and ``turn_rad`` where the base is.
 """
 
 from typing import TYPE_CHECKING
@@ -13,6 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.base import figure_style as style
+from rockfrag.engines.spatial._algebra import TINY
 
 if TYPE_CHECKING:
     from rockfrag.engines.spatial.engine import SpatialOutcome
@@ -26,7 +30,19 @@ def spatial_figure(
     outline: NDArray[np.float64],
     title: str,
 ) -> Figure:
-    """Draw the path of the axis [rad] and the plan [m] of a response, whose base has this outline, (n, 2) [m]."""
+    """Draw the path of the axis [rad] and the plan [m] of a response.
+
+    Parameters
+    ----------
+    outcome : of the analysis: whether, over what and where to the body fell, and how far it turned
+    history : a row a sample, see above
+    outline : of the base at first, from below the centre of mass, shape (n, 2) [m]
+    title : of the figure
+
+    Returns
+    -------
+    The figure, of two panels.
+    """
     with style.panels(style.COLUMN_WIDTH, 6.0, 2) as (figure, (axis, plan)):
         figure.suptitle(title, x=0.02, ha="left")
         _path_of_axis(axis, outcome, history)
@@ -37,9 +53,10 @@ def spatial_figure(
 def _path_of_axis(
     panel: Axes, outcome: "SpatialOutcome", history: pd.DataFrame
 ) -> None:
-    """Draw which way the axis leans, and how far, as seen from above."""
+    """Draw which way the axis leans, and how far, as seen from above [rad]."""
     axis = history[["axis_x", "axis_y"]].to_numpy()
-    sine = np.maximum(np.hypot(*axis.T), 1e-300)
+    # the horizontal part of the axis is as long as the sine of the tilt: it is drawn as long as the tilt
+    sine = np.maximum(np.hypot(*axis.T), TINY)
     x, y = axis.T * (history["tilt_rad"].to_numpy() / sine)
     panel.plot(x, y, color=style.BLUE, lw=0.7)
     panel.plot(x[-1], y[-1], "o", color=style.BLACK, ms=3)
@@ -59,15 +76,16 @@ def _path_of_axis(
 def _plan(
     panel: Axes, history: pd.DataFrame, outline: NDArray[np.float64], turned: float
 ) -> None:
-    """Draw the base at the start and at the end, and how far it has ``turned`` about the vertical [rad]."""
+    """Draw the base at the start and at the end [m], and how far it has ``turned`` about the vertical [rad]."""
     closed = np.vstack([outline, outline[:1]])
     corners = []
     for row, colour, name in (
         (history.iloc[0], style.GUIDE, "at the start"),
         (history.iloc[-1], style.ORANGE, "at the end"),
     ):
-        c, s = np.cos(row.turn_rad), np.sin(row.turn_rad)
-        moved = closed @ np.array([[c, s], [-s, c]]) + (row.base_x_m, row.base_y_m)
+        cosine, sine = np.cos(row.turn_rad), np.sin(row.turn_rad)
+        to_ground = np.array([[cosine, sine], [-sine, cosine]])
+        moved = closed @ to_ground + (row.base_x_m, row.base_y_m)
         panel.plot(*moved.T, color=colour, lw=1.0, label=name)
         corners.append(moved)
     panel.plot(
@@ -92,7 +110,10 @@ def _plan(
 def _square(
     panel: Axes, points: NDArray[np.float64], margin: float, least: float = 1e-6
 ) -> None:
-    """Show all points at one scale for both directions, and at least so much to each side."""
+    """Show all points, shape (2, n), at one scale for both axes of a panel.
+
+    Half a side is ``margin`` times half of the larger extent, and ``least`` at least, in units of the axes.
+    """
     middle = (points.max(axis=1) + points.min(axis=1)) / 2
     half = max(margin * float(np.ptp(points, axis=1).max()) / 2, least)
     panel.set_xlim(middle[0] - half, middle[0] + half)
