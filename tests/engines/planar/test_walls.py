@@ -280,6 +280,25 @@ def test_impacts_at_walls_and_kerbs_gain_nothing_and_push_within_friction(
     assert unlawful <= counted <= 0.002 * seen
 
 
+@pytest.mark.parametrize("seed", [147, 432, 1399])
+def test_a_side_that_lies_on_a_kerb_does_so_until_the_block_has_fallen(
+    seed: int,
+) -> None:
+    """A side that leans a little outwards is level before it, and its lower corner then above the kerb's edge."""
+    rng = np.random.default_rng(seed)
+    system = walled_columns(rng, 1)
+    motion = ground_motion(2 * random_motion(rng)[:400], DT)
+    found = ContactRun(Case(system, motion, request=Request(g=G)), 1e-6)
+    assert found.work["outcome"]["overturned_body"] == 1
+    assert found.work["outcome"]["paradoxes"] == 0
+    state = found.work["q"].ravel()[:3]
+    assert abs(state[2]) == pytest.approx(math.pi / 2, abs=1e-9)
+    touches = touched_walls(system, state[None], size=1.0)
+    edge = [touch for touch in touches if touch.point[1] > 0.0]
+    assert len(edge) == 1
+    assert abs(edge[0].normal[1]) == pytest.approx(1.0, abs=1e-4)
+
+
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_the_balance_of_energy_closes_between_walls(seed: int) -> None:
     found = shaken_block(
