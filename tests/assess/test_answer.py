@@ -80,7 +80,7 @@ def test_below_b_over_h_nothing_rocks_and_far_above_everything_topples(motions):
     rest = assess_with(asked(**FIGURE, pga="0.24 g"), motions, brief=True)
     assert rest.fraction.upper <= rest.rocking.upper < 0.001
     verdict, to_do = lines_of(rest)
-    assert "does not move at PGA 0.24 g: it starts to rock at PGA 0.29 g" in verdict
+    assert "does not rock at PGA 0.24 g: it starts to rock at PGA 0.29 g" in verdict
     assert to_do == "Leave it."
 
 

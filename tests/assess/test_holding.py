@@ -347,3 +347,14 @@ def test_what_is_not_simulated_in_space_is_refused_with_what_to_leave_out(
     request = asked(width="35 cm", height="120 cm", pga="0.6 g", **settings)
     with pytest.raises(InputError, match=rf"^{words} .*; leave out one of them\.$"):
         assess_with(request, few)
+
+
+def test_what_rolls_and_never_rocks_starts_to_rock_at_no_level(few):
+    """It "does not move … it starts to rock at PGA unknown g", on casters that roll."""
+    request = asked(width="60 cm", height="2 m", pga="0.4 g", casters="free")
+    found = assess_with(request, few, holders=False)
+    said = "with casters that roll does not rock at PGA 0.4 g, nor at any level that"
+    assert math.isinf(found.rocks_from) and said in lines_of(found)[0]
+    for language in ("en", "it"):
+        words = [*lines_of(found, language), *details_of(found, language)]
+        assert catalogue(language).text("unknown") not in " ".join(words)

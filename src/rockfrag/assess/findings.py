@@ -168,6 +168,8 @@ def how_likely(found: Assessment) -> Finding:
     if text == Text.HOW_LIKELY_FEW_EARTHQUAKES:
         return _few(found, fraction, about)
     if text == Text.HOW_LIKELY_AT_REST:
+        if not math.isfinite(found.rocks_from):
+            return finding(Text.HOW_LIKELY_ROCKS_NOWHERE, fraction, **about)
         about["starts"] = _amount(found, found.rocks_from)
         return finding(text, fraction, **about)
     about["likelihood"] = finding(_text(choices.likelihood, fraction.value))

@@ -243,7 +243,8 @@ class Shaking(IntensityLevels):
             kind = "space"
         elif objects.many:
             kind, bodies = "contact", 1 + len(objects.pedestals)
-        return self.scales.size * SECONDS[kind] * bodies
+        each = [holder.seconds for holder in objects.under.holders]
+        return self.scales.size * max(SECONDS[kind] * bodies, *each, 0.0)
 
     def outcomes_of_each(
         self,

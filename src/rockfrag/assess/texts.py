@@ -30,6 +30,7 @@ class Text(StrEnum):
     AT_MOST = auto()
     AT_LEAST = auto()
     HOW_LIKELY_AT_REST = auto()
+    HOW_LIKELY_ROCKS_NOWHERE = auto()
     HOW_LIKELY_FEW_EARTHQUAKES = auto()
     HOW_LIKELY_NO_LEVEL = auto()
     HOW_LIKELY_NEVER_ROCKS = auto()

@@ -63,7 +63,9 @@ const findings = (data, core, judge) => {
     const rocks = rocking?.value ?? found.rockingValue;
 
     function howLikely() {
-      const id = chosen("how_likely", few, atRest, rocks);
+      const kind = chosen("how_likely", few, atRest, rocks);
+      const nowhere = kind === "how_likely_at_rest" && !Number.isFinite(found.rocksFrom);
+      const id = nowhere ? "how_likely_rocks_nowhere" : kind;
       const topple = counts ? counts[2] : percent(found.value);
       const about =
         {
@@ -73,6 +75,7 @@ const findings = (data, core, judge) => {
             n: found.earthquakes,
           }),
           how_likely_at_rest: () => ({ starts: amount(found.rocksFrom) }),
+          how_likely_rocks_nowhere: () => ({}),
         }[id] ??
         (() => ({
           likelihood: finding(chosen("likelihood", value)),

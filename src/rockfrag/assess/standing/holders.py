@@ -64,6 +64,8 @@ class Holder(ABC):
     # Whether a simulation of it takes long: it is tried in one plane then, also of an object that is shaken in
     # space, where one of stiff ties takes a second, and asked by every second motion what it must bear
     slow: ClassVar[bool] = False
+    # About how long a core takes for one history of what it holds as it stands [s]
+    seconds: ClassVar[float] = 3e-3
 
     @abstractmethod
     def on(self, system: System) -> System:
@@ -206,6 +208,7 @@ class Isolator(Holder):
     key: ClassVar[str] = "isolator"
     demand: ClassVar[str] = "stroke"
     slow: ClassVar[bool] = True
+    seconds: ClassVar[float] = 1e-2
 
     def holds_in_space(self, solid: System) -> bool:
         """In one plane only."""
@@ -275,6 +278,7 @@ class Springs(Isolator):
     strength: float | None = None
     yields_at: float = YIELDS_AT
     short = finding(Text.HELD_BY_SPRINGS)
+    seconds: ClassVar[float] = 6e-2
 
     def _support(self, plate: float, carried: float) -> Support:
         """Return the springs."""
