@@ -134,6 +134,40 @@ def test_a_jump_that_stops_a_block_at_its_impact_takes_it_over_to_the_other_pivo
     )
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_the_mirror_image_of_a_jump_turns_the_mirror_image_of_a_block(side):
+    shape = geometry.Shape(0.1, 10.0, 1.0, side * 0.02, 0.4)
+    pivot, rate = geometry.jumped(shape, 0.0, side * 1.0, (side * 0.2, 0.1))
+    plain = geometry.Shape(0.1, 10.0, 1.0, 0.02, 0.4)
+    expected = geometry.jumped(plain, 0.0, 1.0, (0.2, 0.1))
+    assert (side * pivot, side * rate) == pytest.approx(expected)
+
+
+def test_a_tensor_of_inertia_turns_a_block_in_its_plane_about_y():
+    block = Block(
+        0.4, 1.0, 50.0, ((7.0, 0.0, 0.0), (0.0, 5.0, 0.0), (0.0, 0.0, 2.0)), depth=0.3
+    )
+    assert block.centroidal_inertia == 5.0
+
+
+@pytest.mark.parametrize("pivot", [1, -1])
+def test_the_lowest_edge_is_where_the_later_of_both_balances(pivot):
+    rng = np.random.default_rng(6)
+    for tall in (0.2, 2.0):
+        lower = Block(0.6, 0.5, 90.0, cg_offset=0.02)
+        pile = Stack(
+            lower, Block(0.3, tall, 40.0), offset=rng.uniform(-0.05, 0.05)
+        ).pile
+        whole = geometry.joined(pile)
+        furthest = max(
+            geometry.critical_angle(each, pivot) for each in (lower.shape, whole)
+        )
+        # the pivot of the statue on that side, from the pedestal's
+        across = pivot * (pivot * pile.offset + 0.15 - 0.3)
+        heights = [geometry.turned(across, 0.5, pivot * a)[1] for a in (0.0, furthest)]
+        assert geometry.lowest_edge(pile, pivot) == pytest.approx(min(heights))
+
+
 def test_two_blocks_as_one_have_the_centre_and_the_inertia_of_both():
     rng = np.random.default_rng(5)
     for _ in range(5):
