@@ -11,15 +11,21 @@ from scipy.integrate import RK45, solve_ivp
 
 from ...mutants.plain import plain_library
 from .test_statements import (
+    Circle,
+    Contact,
     G,
+    RigidBody,
+    System,
     attitude,
     case,
     forces,
     inverse_mass,
     jacobian,
+    kernel_body,
     leaning,
     mode,
     modes,
+    plain,
     point,
     rotation,
     set_down,
@@ -247,6 +253,41 @@ def test_static_friction_holds_what_has_not_slipped_and_kinetic_brakes_what_has(
             seen.add("against")
         else:
             seen.add("along")
+
+
+def test_a_contact_that_slips_a_given_way_is_rubbed_against_it():
+    rng = np.random.default_rng(14)
+    for _ in range(8):
+        body, y, rows, momentum, s = struck(rng, (2,), 0.3)
+        if s.free[2] >= 0:
+            # it parts
+            continue
+        s.given[0], s.way[0] = 1, (0.6, -0.8)
+        found, _ = modes.solve(body, y, rows, 1, 0, momentum, s)
+        normal = s.impulse[2]
+        assert found == 1
+        assert s.impulse[:2] == pytest.approx((-0.18 * normal, 0.24 * normal))
+        j = jacobian(y, point(body, 2))
+        after = j @ (y[7:13] + inverse_mass(body) @ j.T @ s.impulse[:3])
+        assert after[2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_rim_that_stops_at_its_lowest_point_stops_there():
+    """By the least momentum, as a vertex at that place would."""
+    across = (3 * 0.2**2 + 0.8**2) / 12
+    tensor = np.diag([across, across, 0.02])
+    rim = RigidBody(1.0, tensor, (0.0, 0.0, 0.4), Circle(0.2), 0.8)
+    body = plain(kernel_body(System((rim,), (Contact(),))))
+    rng, s = np.random.default_rng(15), case()
+    y = state(rng, body)
+    rows, before = rotation(y), y[7:13].copy()
+    lowest = np.array(solid.arm(body, rows[2], body.count))
+    mode(s, body.count)
+    modes.hold(body, y, rows, s)
+    j = jacobian(y, lowest)
+    push = np.linalg.solve(j @ inverse_mass(body) @ j.T, -j @ before)
+    expected = before + inverse_mass(body) @ j.T @ push
+    assert y[7:13] == pytest.approx(expected, abs=1e-10)
 
 
 def test_a_mode_is_read_off_the_impulses_that_were_found():
