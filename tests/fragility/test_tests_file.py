@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.base.errors import InputError
-from rockfrag.fragility.tests_file import read_tests
+from rockfrag.fragility.tests_file import _outcomes, read_tests
 from rockfrag.fragility.user_table import fit_user_table
 
 from ..case_tables import case_tables
@@ -153,3 +153,10 @@ def test_the_granite_rock_follows_its_velocity(shared):
         582,
         243,
     )
+
+
+def test_outcomes_written_as_decimals_are_outcomes():
+    piece = pd.DataFrame({"fell": ["1.0", "0,00", " Yes ", "0."]})
+    assert _outcomes(piece, "fell", "t.csv", 2).tolist() == [1.0, 0.0, 1.0, 0.0]
+    with pytest.raises(InputError, match="'10' is no outcome"):
+        _outcomes(pd.DataFrame({"fell": ["10"]}), "fell", "t.csv", 2)

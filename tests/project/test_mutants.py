@@ -45,6 +45,24 @@ def test_each_operator_number_and_counterpart_of_a_line_is_changed():
     }
 
 
+GUARDS = """
+MOST_STEPS = 100
+FEWEST = 5
+small = 1e-9 if far < 1e300 else 1e-3
+pairs = zip(a, b, strict=True)
+"""
+
+
+def test_what_guards_alone_is_left_and_what_counts_is_changed():
+    found = {(change.line, change.old, change.new) for change in changes_of(GUARDS)}
+    assert found == {
+        (3, "5", "6"),
+        (4, "<", "<="),
+        (4, "<", ">"),
+        (4, "1e-3", "0.00125"),
+    }
+
+
 def test_a_change_is_one_of_one_line_and_leaves_a_program():
     lines = [line for group in GROUPS for line in mutants_of(group, "")]
     assert len(lines) > 3000

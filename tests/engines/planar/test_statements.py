@@ -834,6 +834,44 @@ def test_a_low_wall_is_met_by_a_corner_below_its_top_and_by_its_edge_above():
     assert kinds == {(s, k) for s in (-1.0, 1.0) for k in (0, 1)}
 
 
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("slides", [(1, 1), (-1, 1), (1, -1), (0, 1), (-1, 0)])
+def test_what_leans_at_a_wall_is_pushed_there_and_at_its_foot(side, slides):
+    """Newton's and Euler's equations of a leaning block, and friction where it slides."""
+    block = as_system(Block(0.4, 1.0, 80.0))
+    wall = Wall(5.0, 0.0 if side > 0 else math.pi, friction=(0.3, 0.3))
+    p, w = plain(system_record(hold(block, wall), G)), plain(working_memory())
+    p.static[0] = p.kinetic[0] = 0.5
+    flat, _ = posed(p, [side * 0.3], [0.0])
+    w.q, w.drive[:], w.kind[:] = flat, -1, 1
+    foot, top = (1, 1) if side > 0 else (0, 0)
+    w.closed[0, foot] = w.closed[1, top] = 1
+    w.slides[:2] = slides
+    solve.look_at(p, w, w.q)
+    q = w.q[:3]
+    points = [
+        q[:2] + turn(q[2]) @ corner for corner in (p.corner[0, foot], p.edge[1, top])
+    ]
+    p.wall_x[1] = points[1][0]
+    assert solve.solve_motion(p, w, w.q, w.v, RIGHT, UP)
+    normals = np.array([(0.0, 1.0), (-side, 0.0)])
+    tangents = np.array([(1.0, 0.0), (0.0, side)])
+    a, net = w.out[:3], np.zeros(3)
+    for k, end in ((0, foot), (1, top)):
+        force = w.normal[k, end] * normals[k] + w.shear[k] * tangents[k]
+        arm = points[k] - q[:2]
+        net += (*force, force[0] * arm[1] - force[1] * arm[0])
+        at = a[:2] + a[2] * np.array([arm[1], -arm[0]])
+        assert at @ normals[k] == pytest.approx(0.0, abs=1e-9)
+        if slides[k] == 0:
+            assert at @ tangents[k] == pytest.approx(0.0, abs=1e-9)
+        else:
+            rubs = -slides[k] * p.kinetic[k] * w.normal[k, end]
+            assert w.shear[k] == pytest.approx(rubs)
+    masses = np.array([80.0, 80.0, p.inertia[0]])
+    assert net == pytest.approx(masses * (a + np.array([RIGHT, UP + G, 0.0])), abs=1e-7)
+
+
 def test_a_bilinear_spring_yields_at_its_strength_and_unloads_along_its_first_stiffness():
     isolator = BilinearIsolator(
         mass=20.0, stiffness=400.0, strength=50.0, yield_displacement=0.01

@@ -14,6 +14,7 @@ from scipy.integrate import RK45
 from rockfrag import Block, Stack
 from rockfrag.simulation import MeasuredRestitution
 from rockfrag.simulation.options import system_of
+from rockfrag.system import geometry
 
 from ...mutants.plain import plain_library
 from ...oracle.rocking_model import LinearModel, Model, pivots
@@ -306,6 +307,27 @@ def test_a_lone_block_that_comes_down_keeps_the_ratio_that_it_was_given():
             _, after, _, w2, gives = impact.impact(body, state, False, True)
             assert (after, gives) == (-side, 0)
             assert w2 == pytest.approx(-side * 0.8 * ratio)
+
+
+@pytest.mark.parametrize("linear", [False, True])
+def test_momentum_gives_a_lone_block_housners_ratio_also_where_it_is_linearised(linear):
+    for seed in range(4):
+        block = random_block(np.random.default_rng(seed), slenderness=(2.0, 5.0))
+        body = plain(body_record(system_of(block), linear, G))
+        for side in (1, -1):
+            state = state_of((0, side), (0, 0), (0, -side * 0.8))
+            _, after, _, w2, _ = impact.impact(body, state, False, True)
+            ratio = geometry.momentum_restitution(block.shape, -side)
+            assert (after, w2) == (-side, pytest.approx(-side * 0.8 * ratio))
+
+
+def test_contacts_begin_open_where_bodies_lean_or_else_turn():
+    first = contact_states.first_contacts
+    assert first(state_of((0, 0), (0, 0), (0, 0))) == (0, 0)
+    assert first(state_of((0, 0), (0.1, 0.1), (-1, -1))) == (1, 0)
+    assert first(state_of((0, 0), (0, -0.1), (0, 2))) == (0, -1)
+    assert first(state_of((0, 0), (0, 0), (-0.3, 0.2))) == (-1, 1)
+    assert first(state_of((0, 0), (0.2, 0.1), (0, 0))) == (1, -1)
 
 
 def test_series_are_polynomials():

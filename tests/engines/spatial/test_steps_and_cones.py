@@ -11,15 +11,21 @@ from scipy.integrate import RK45, solve_ivp
 
 from ...mutants.plain import plain_library
 from .test_statements import (
+    Circle,
+    Contact,
     G,
+    RigidBody,
+    System,
     attitude,
     case,
     forces,
     inverse_mass,
     jacobian,
+    kernel_body,
     leaning,
     mode,
     modes,
+    plain,
     point,
     rotation,
     set_down,
@@ -41,6 +47,7 @@ MODES = {
     "hinge": ((3, 4), (0, 0)),
     "edge that slides at one end": ((3, 4), (0, 1)),
     "edge that slides": ((1, 2), (1, 1)),
+    "face that slides": ((0, 2, 3, 5), (1, 1, 1, 1)),
 }
 
 
@@ -246,6 +253,103 @@ def test_static_friction_holds_what_has_not_slipped_and_kinetic_brakes_what_has(
             seen.add("against")
         else:
             seen.add("along")
+
+
+def test_a_contact_that_slips_a_given_way_is_rubbed_against_it():
+    rng = np.random.default_rng(14)
+    for _ in range(8):
+        body, y, rows, momentum, s = struck(rng, (2,), 0.3)
+        if s.free[2] >= 0:
+            # it parts
+            continue
+        s.given[0], s.way[0] = 1, (0.6, -0.8)
+        found, _ = modes.solve(body, y, rows, 1, 0, momentum, s)
+        normal = s.impulse[2]
+        assert found == 1
+        assert s.impulse[:2] == pytest.approx((-0.18 * normal, 0.24 * normal))
+        j = jacobian(y, point(body, 2))
+        after = j @ (y[7:13] + inverse_mass(body) @ j.T @ s.impulse[:3])
+        assert after[2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_rim_that_stops_at_its_lowest_point_stops_there():
+    """By the least momentum, as a vertex at that place would."""
+    across = (3 * 0.2**2 + 0.8**2) / 12
+    tensor = np.diag([across, across, 0.02])
+    rim = RigidBody(1.0, tensor, (0.0, 0.0, 0.4), Circle(0.2), 0.8)
+    body = plain(kernel_body(System((rim,), (Contact(),))))
+    rng, s = np.random.default_rng(15), case()
+    y = state(rng, body)
+    rows, before = rotation(y), y[7:13].copy()
+    lowest = np.array(solid.arm(body, rows[2], body.count))
+    mode(s, body.count)
+    modes.hold(body, y, rows, s)
+    j = jacobian(y, lowest)
+    push = np.linalg.solve(j @ inverse_mass(body) @ j.T, -j @ before)
+    expected = before + inverse_mass(body) @ j.T @ push
+    assert y[7:13] == pytest.approx(expected, abs=1e-10)
+
+
+def test_a_mode_is_read_off_the_impulses_that_were_found():
+    """What pushes is closed; it slides where it slips and its shear is all that its friction gives."""
+    body, s = uneven(np.random.default_rng(11)), case()
+    y = leaning(body, 0.0, 0.0)
+    s.which[:3], s.grip[:3] = (5, 2, 4), 0.5
+    s.impulse[:9] = 0.0, 0.0, 0.0, -0.3, 0.4, 1.0, 0.1, 0.0, 1.0
+    s.after[:9] = 0.0, 0.0, 2.0, 0.6, -0.8, 0.0, 0.0, 0.0, 0.0
+    modes.write_mode(body, y, rotation(y), 3, 0b110, s)
+    assert s.count == 2
+    assert s.closed[:2].tolist() == [2, 4]
+    assert s.slides[:2].tolist() == [forces.SLIDES, forces.STICKS]
+    assert s.direction[0] == pytest.approx((0.6, -0.8))
+    corners = np.array([point(body, i)[:2] for i in (2, 4)])
+    assert s.anchor[:2] == pytest.approx(corners)
+    assert s.counters[modes.SLIDINGS] == 1
+
+
+def test_where_a_mode_comes_again_what_is_furthest_from_consistent_is_changed():
+    body, s = uneven(np.random.default_rng(12)), case()
+    body.static = 0.5
+    pushes = np.array([(0.1, 0.0, 0.5), (0.6, -0.8, 1.0), (0.0, 0.3, -0.2)])
+    for what, left, slides in (
+        (modes.OPENS, [1, 2], [0, 0]),
+        (modes.LEAVES_CONE, [1, 2, 4], [0, 1, 0]),
+    ):
+        mode(s, 1, 2, 4)
+        s.lam[:3] = pushes
+        # the third pulls, and is out of its cone the less
+        s.lam[2, 2] = -0.2 if what == modes.OPENS else 0.4
+        s.anchor[:3] = [(1.0, 2.0), (3.0, 4.0), (5.0, 6.0)]
+        modes.insist(body, what, s)
+        assert s.count == len(left)
+        assert s.closed[: s.count].tolist() == left
+        assert s.slides[: s.count].tolist() == slides
+    # against its shear
+    assert s.direction[1] == pytest.approx((-0.6, 0.8))
+    # the first opens: the others and where they stick move up
+    mode(s, 1, 2, 4)
+    s.lam[:3, 2] = -1.0, 1.0, 1.0
+    s.anchor[:3] = [(1.0, 2.0), (3.0, 4.0), (5.0, 6.0)]
+    modes.insist(body, modes.OPENS, s)
+    assert s.closed[:2].tolist() == [2, 4]
+    assert s.anchor[:2].tolist() == [[3.0, 4.0], [5.0, 6.0]]
+
+
+def test_accelerations_under_forces_that_were_found_are_newtons_and_eulers():
+    rng = np.random.default_rng(13)
+    body, s = uneven(rng), case()
+    y = state(rng, body)
+    r = attitude(y)
+    s.which[:2] = 1, 4
+    s.impulse[:6] = push = rng.normal(size=6)
+    weight, moment = rng.normal(size=(2, 3))
+    load, spin = modes.pushed_by(body, rotation(y), 2, tuple(weight), tuple(moment), s)
+    by_push = [r.T @ push[3 * k : 3 * k + 3] for k in (0, 1)]
+    assert load == pytest.approx(weight + sum(by_push))
+    turned = moment + sum(
+        np.cross(point(body, i), f) for i, f in zip((1, 4), by_push, strict=True)
+    )
+    assert spin == pytest.approx(np.linalg.solve(body.inertia, turned))
 
 
 def test_systems_are_solved_and_factored_as_numpy_does():

@@ -1,0 +1,112 @@
+"""Sorting, quantiles, factors and statics of the core beside NumPy and beside the balance of moments."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import special, stats
+
+from rockfrag.assess.core.draws import make_draws
+from rockfrag.base.plausible import LARGEST_PEAK
+from rockfrag.base.units import GRAVITY
+
+from ...mutants.plain import plain_library
+
+with plain_library():
+    from rockfrag.assess.core import demands, ordering, scales
+
+
+def test_numbers_are_sorted_and_summed_up_as_numpy_does():
+    rng = np.random.default_rng(1)
+    for size in (1, 2, 3, 8, 33):
+        values = rng.normal(size=size).round(1)
+        ordered = values.copy()
+        ordering.sort(ordered)
+        assert ordered.tolist() == sorted(values)
+        for part in (0.0, 0.05, 0.5, 0.77, 1.0):
+            found = ordering.quantile(ordered, size, part)
+            assert found == pytest.approx(np.quantile(values, part))
+        assert ordering.mean(values) == pytest.approx(values.mean())
+        assert ordering.variance(values) == pytest.approx(values.var())
+    # of the first numbers alone
+    assert ordering.quantile(np.array([1.0, 2.0, 9.0]), 2, 0.5) == 1.5
+
+
+def test_a_strength_is_enough_for_95_percent_of_the_motions_and_none_less_is():
+    rng = np.random.default_rng(2)
+    for count in (1, 2, 20, 21, 41):
+        asked = rng.uniform(1, 9, count)
+        least = demands.ask(asked, np.zeros(count))
+        assert least in asked
+        assert demands.count_held(asked, least) >= 0.95 * (count - 1)
+        less = asked[asked < least]
+        assert less.size == 0 or demands.count_held(asked, less.max()) - 1 < 0.95 * (
+            count - 1
+        )
+    assert demands.ask(np.zeros(0), np.zeros(0)) == 0.0
+
+
+def test_motions_are_scaled_tenfold_at_most_and_no_further_than_is_believed():
+    levels, values = np.array([0.05, 0.5, 5.0, 60.0]), np.array([0.5, 2.0])
+    # the second is believed up to twice what it was
+    peaks = np.array([0.0, LARGEST_PEAK / 2.0])
+    factors, allowed = np.zeros((2, 4)), np.zeros((2, 4), bool)
+    scales.fill_scales(levels, values, peaks, factors, allowed)
+    assert factors == pytest.approx(levels / values[:, None])
+    assert allowed.tolist() == [[True, True, True, False], [False, True, False, False]]
+    held = np.zeros((2, 4))
+    scales.fill_factors(factors, np.ones((2, 4), bool), peaks, held)
+    assert held[0] == pytest.approx(factors[0])
+    assert held[1] == pytest.approx(np.minimum(factors[1], 2.0))
+    scales.fill_factors(factors, allowed, peaks, held)
+    assert (held[~allowed] < 1e-6).all()
+    assert scales.peak_of(np.array([1.0, -3.0, 2.0])) == 3.0
+    both = np.zeros(3)
+    first, second = np.array([1.0, 2.0, 0.0]), np.array([0.0, 1.0, -2.0])
+    scales.fill_direction(first, second, 0.6, 0.8, both)
+    assert both == pytest.approx(0.6 * first + 0.8 * second)
+
+
+def test_a_body_lifts_over_the_edge_whose_moment_is_first_overcome():
+    """Moment of the weight about each edge against that of the push at the height of the centre."""
+    rng, height = np.random.default_rng(3), 0.7
+    corners = np.array([(-0.3, -0.2), (0.25, -0.25), (0.35, 0.1), (-0.2, 0.3)])
+    x, y = rng.normal(size=(2, 50))
+    found = scales.lifting_over_edges(corners, height, x, y)
+
+    def least_moment(factor: float) -> float:
+        """Least moment that holds the body down, over all edges and samples, for a unit of mass."""
+        least = math.inf
+        for here, there in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            way = (there - here) / np.linalg.norm(there - here)
+            outward = np.array([way[1], -way[0]])
+            # the ground moves, so that the body is pushed the other way
+            push = -factor * (outward[0] * x + outward[1] * y)
+            least = min(least, (GRAVITY * (outward @ here) - height * push).min())
+        return least
+
+    assert least_moment(0.999 * found) > 0 > least_moment(1.001 * found)
+    assert scales.lifting_in_plane(0.25, 3.0) * 3.0 == pytest.approx(0.25 * GRAVITY)
+
+
+def test_a_rim_lifts_at_the_nearest_of_its_points():
+    x, y = np.array([1.0, 3.0, 0.0]), np.array([0.0, 4.0, -2.0])
+    level = GRAVITY * 0.2 / 0.5 / 5.0
+    assert scales.lifting_over_rim(0.2, 0.0, 0.0, 0.5, x, y) == pytest.approx(level)
+    aside = scales.lifting_over_rim(0.2, 0.03, -0.04, 0.5, x, y)
+    assert aside == pytest.approx(level * 0.15 / 0.2)
+
+
+@pytest.mark.parametrize("earthquakes", [2, 5, 30])
+def test_weights_of_earthquakes_are_dirichlets_as_wide_as_student_asks(earthquakes):
+    """So that a mean of n values has the variance t² s²/(n - 1), s² with n in its denominator."""
+    weights = make_draws(1, earthquakes).weights
+    n, m = earthquakes, earthquakes + 1
+    assert weights.shape[1] == m
+    assert weights.sum(axis=1) == pytest.approx(1.0)
+    assert weights.mean(axis=0) == pytest.approx(1 / m, rel=0.25)
+    student = stats.t(n - 1).ppf(0.95) / special.ndtri(0.95)
+    # Dirichlet's parameter a: n a + 1 values are as good as (n - 1)/t²
+    a = max((n - 1) / student**2 - 1, 0.1 * n) / n
+    expected = (1 / m) * (1 - 1 / m) / (m * a + 1)
+    assert weights.var(axis=0).mean() == pytest.approx(expected, rel=0.1)
