@@ -202,6 +202,7 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
         substep = _substep(body, shaking, k, sub)
         # part of the substep that has passed
         tau = 0.0
+        # of so many that forcing has not ended them (:func:`_land`) the rest of the sample is left out
         while tau < 1.0 and count <= MAX_CONTACT_EVENTS_PER_STEP + 20:
             left = 1.0 - tau
             step = _rest_of(substep, tau)
@@ -423,7 +424,8 @@ def _failing_time(body, contact, step, series, end, trial):
     """Find when in [0, end] of a step a closed contact would first have to be pulled; NEVER if it stays pressed.
 
     ``contact`` and ``trial`` as of :func:`_hold_at`. The instant is bracketed by the step's ends, or by its start
-    and a dip between them, and found by regula falsi.
+    and a dip between them, and found by regula falsi. A contact that is pulled at the start alone, as it may by
+    rounding just after a contact event, and pressed from then to the end counts as pressed.
     """
     at_start = _hold_at(body, contact, step, series, 0.0, trial)
     at_end = _hold_at(body, contact, step, series, end, trial)

@@ -525,6 +525,7 @@ def _take_up(lane, i, number, ensemble, motions):
     lane.low[i], lane.fast[i], lane.near[i] = 1.0, 0.0, math.inf
     lane.factor[i] = ensemble.factors[motion, scale]
     lane.tau[i] = 0.0
+    # the motion as it is sampled for this body
     sampled = ensemble.rows[body, motion]
     lane.first[i] = motions.offsets[sampled]
     lane.k[i] = motions.offsets[sampled]
