@@ -157,8 +157,8 @@ def _coupled(series, k, coupling, right):
 
     What they add is D θ2'² + (M12 - m₀) θ2'' for the first, and (M12 - m₀) θ1'' - D θ1'² for the second, with
     Δ = θ2 - θ1, M12 = E cos Δ + F sin Δ and D = F cos Δ - E sin Δ. m₀, coefficient 0 of M12, stands on the left
-    side, in the mass matrix, so that the sum with M12 begins at its coefficient 1. ``coupling`` is E and F, ``right``
-    both right-hand sides; ``two`` is the second rotation.
+    side, in the mass matrix, so that the sum with M12 begins at its coefficient 1. ``coupling`` is E and F,
+    ``right`` both right-hand sides; ``two`` is the second rotation.
     """
     (e, f), (right1, right2) = coupling, right
     first, two, between = series.one.angle, series.two.angle, series.between
