@@ -88,7 +88,7 @@ class ShakenObject:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Limits of that probability [-]."""
+        """Limits of the probability that it fell [-]."""
         return self.falls[1:]
 
     @cached_property

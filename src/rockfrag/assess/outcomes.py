@@ -360,7 +360,11 @@ class Shaking(IntensityLevels):
         return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
 
     def _records(self) -> tuple[list[GroundMotion], Floats]:
-        """All components of each record, in the order of the records, and factors on them, (records, levels)."""
+        """All components of each record, in the order of the records, and factors on them, (records, levels).
+
+        A record is the numbers of its components among the motions; the first stands for it in levels and peaks.
+        One without a second component gets one that is zero.
+        """
         motions = self.motions
         shaking = [
             GroundMotion(*motions.components(record)).with_second()

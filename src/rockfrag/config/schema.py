@@ -202,9 +202,9 @@ def _places(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _importance(error: "ValidationError") -> tuple[int, list[str]]:
-    """Order of an error: what a user typed goes before what follows from it."""
+    """Order of an error, the lowest named first: what a user typed goes before what follows from it."""
     if _broken_rule(error):
-        # keys that are right by themselves; the first rule in the order of the schema
+        # keys that are right by themselves: last, and by no path, so in the order of the schema
         return 3, []
     # a misspelt key is also a missing one: name the misspelling, which is what the user typed
     rank = {"additionalProperties": 0, "required": 2}.get(str(error.validator), 1)

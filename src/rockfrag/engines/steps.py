@@ -15,6 +15,7 @@ memory of smaller errors."""
 
 # free rocking after the motion is followed for at most this long, in units of 1/p
 FREE_TIME = 60.0
+MOST_STEPS = 10_000  # of a sample
 MOST_SAMPLES = 20_000_000
 """Samples of a history, the motion and the free rocking after it, that are admitted."""
 
@@ -85,8 +86,9 @@ def step_count(
     The steps, of the shape of ``dt``.
     """
     frequency = fastest_frequency(system, g)
+    # a whole number of steps but for rounding stays that
     steps = np.ceil(frequency * np.asarray(dt) / step - 1e-9)
-    if steps.max(initial=0) > 10_000:
+    if steps.max(initial=0) > MOST_STEPS:
         raise InputError(
             f"dt: {np.max(dt)} s is too long for a block of p = {frequency:.3g} 1/s."
         )

@@ -108,7 +108,10 @@ def critical_jump(width: float, height: float, g: float = GRAVITY) -> float:
 
 
 def critical_rate(alpha: float, radius: float, g: float) -> float:
-    """Angular velocity at rest that just takes a uniform block to balance, p √(2 (1 - cos α)) [rad/s]."""
+    """Angular velocity as it leaves rest that just takes a uniform block to balance, p √(2 (1 - cos α)) [rad/s].
+
+    ``alpha`` [rad], ``radius`` [m]: slenderness and half the diagonal; ``g`` [m/s²].
+    """
     p = math.sqrt(3 * g / (4 * radius))
     return p * math.sqrt(2 * (1 - math.cos(alpha)))
 

@@ -206,7 +206,10 @@ def _friction_of_each(friction: Any, count: int) -> list[Any]:
 
 
 def _frictions_of(count: int, friction: object, name: str) -> list[Friction | None]:
-    """Return the friction of each contact of a body, the ground's first."""
+    """Return the friction of each contact of a body, the ground's first.
+
+    ``count``: of its contacts; ``name``: of the argument, for messages.
+    """
     above = ["interface"] if count == 2 else [f"interface {k}" for k in range(1, count)]
     if isinstance(friction, np.ndarray) and friction.ndim == 0:
         friction = friction.item()
@@ -215,6 +218,7 @@ def _frictions_of(count: int, friction: object, name: str) -> list[Friction | No
         if count == 2
         else f"expected one entry for each of {count} contacts"
     )
+    # one value holds for all contacts, of which there is nothing to say
     shared = isinstance(friction, (numbers.Real, Friction))
     given = each_contact(name, friction, count, "" if shared else wanted)
     return [

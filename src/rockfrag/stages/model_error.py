@@ -139,7 +139,7 @@ def blind_answer(
     ------
     InputError : where outcomes do not rise with the measure
     """
-    medians, dispersion = _curves_of_ways(tests, measure, simulated)
+    medians, dispersion = _curves_by_arrangement(tests, measure, simulated)
     places = [(1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2]
     lower, middle, upper = np.quantile(medians, places, method="nearest").tolist()
     theta, sampling = _measured_curve(tests, measure, simulated)
@@ -158,7 +158,7 @@ def blind_answer(
     )
 
 
-def _curves_of_ways(
+def _curves_by_arrangement(
     tests: MeasuredTests, measure: Floats, simulated: Flags
 ) -> tuple[Floats, float]:
     """Median of each way to stand, in the unit of the measure, shape (ways,), and their middle dispersion [-].

@@ -199,7 +199,7 @@ class System:
 
     @cached_property
     def carried(self) -> tuple[geometry.Shape, ...]:
-        """Each body of a planar system as it rocks on its contact, whose ends are those of base and face."""
+        """Each body of a planar system as it rocks: with a base as wide as what of it lies on the face below."""
         if self.count == 2:
             return self.shapes[0], self.pile.upper
         bodies = self.in_plane().bodies

@@ -33,7 +33,7 @@ class Part(JITCodeLibrary):
         self._linking_libraries.append(library)
 
     def finalize(self) -> None:
-        """Leave the code as it is, for others to link."""
+        """Leave the code unoptimised, for others to link."""
         for function in self._final_module.functions:
             if (
                 not function.is_declaration

@@ -101,8 +101,9 @@ def _fill_walls(p: np.void, system: System, shift: int) -> None:
             # a body has four corners: left low, left high, right low, right high
             first = 4 * body + (2 if wall.side > 0 else 0)
             x, z = centres[body]
-            (right, low), (top, high) = standing[first], standing[first + 1]
-            side = _describe.Side(wall.side, (right - x, low - z), (top - x, high - z))
+            (low_x, low_z), (high_x, high_z) = standing[first], standing[first + 1]
+            low, high = (low_x - x, low_z - z), (high_x - x, high_z - z)
+            side = _describe.Side(wall.side, low, high)
             at = wall.side * wall.distance - middle
             _describe.fill_wall(with_attributes(p), k, at, side)
 

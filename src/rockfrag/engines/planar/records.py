@@ -134,7 +134,7 @@ WORK = np.dtype(
         *fields("hanging", MOST, 3),
         *fields("small", 3, 7),
         *fields("yields_to", 3, 3),
-        # all equations at once, and which they are
+        # memory for a row; all equations at once, and which they are
         *fields("light", 6),
         *fields("matrix", 3 * ALL, 3 * ALL),
         *fields("joint largest", 3 * ALL),

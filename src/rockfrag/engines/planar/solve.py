@@ -42,7 +42,7 @@ def look_at(p, w, q):
 
 @inlined_kernel
 def corner_of(p, w, q, k, end):
-    """Corner (x, y) [m] of the base of body k at an end, 0 or 1, as the body lies in ``q``."""
+    """Corner (x, y) [m] of the base of body k at an end, 0 or 1, in ``q``, after :func:`look_at` with it."""
     cx, cy = p.corner[k, end, 0], p.corner[k, end, 1]
     c, s = w.cos[k], w.sin[k]
     return q[3 * k] + cx * c + cy * s, q[3 * k + 1] - cx * s + cy * c
@@ -222,13 +222,16 @@ def standing_bodies(p, w):
 
 @kernel
 def _fill_equations(p, w, q, v, k, sought):
-    """Fill the equations of contact k (``docs/contact.md``, 3), none if it is open.
+    """Fill the equations of contact k (``docs/contact.md``, 3), none if it is open, at most three.
 
-    A closed end asks that its normal motion vanish, one that sticks also its tangential one. Equation i, from 3 k
-    on, has ``w.row[i]``, the motion that it asks for, ``w.column[i]``, the force that brings it about (the normal
-    one with the friction of a contact that slides), ``w.right[i]`` and ``w.what[i]``, an end, SHEAR or COUPLE. In
-    an impact motions are velocities, and laws of restitution add a departing speed, a share of the impulse at the
-    other end, or a couple.
+    A closed end asks that its normal motion vanish, one that sticks also its tangential one, once for both ends.
+    Equation i, from 3 k on, has ``w.row[i]``, the motion that it asks for, ``w.column[i]``, the force that brings
+    it about (the normal one with the friction of a contact that slides), ``w.right[i]`` and ``w.what[i]``, an end,
+    SHEAR or COUPLE.
+
+    In an impact motions are velocities, and laws of restitution act in three ways: an end departs at the speed
+    ``w.back``; the part ``w.fraction`` of its impulse acts at the other end too; or a couple lets the end
+    ``w.drive`` (-1 if none) depart at the speed ``w.depart``.
     """
     impact = sought.impact
     friction = rubbing(p, w, q, k) if sought.rubs else 0.0
@@ -245,12 +248,13 @@ def _fill_equations(p, w, q, v, k, sought):
         )
         fill_row(p, q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
         if impact and w.fraction[k, end] > 0.0:
-            # what the impulse brings about at the other end
+            # what the impulse brings about at the other end; ``light`` is free memory for a row here
             xo, yo, to, no, _, _, _ = end_of(p, w, q, k, 1 - end, w.kind[k, 1 - end])
             fill_row(p, q, k, xo, yo, -no - friction * to, to - friction * no, w.light)
             for d in range(6):
                 w.column[m, d] += w.fraction[k, end] * w.light[d]
         m += 1
+        # both ends lie on one line, which one shear holds
         if first and w.slides[k] == 0:
             fill_row(p, q, k, x, y, tx, ty, w.row[m])
             fill_row(p, q, k, x, y, tx, ty, w.column[m])
@@ -391,6 +395,7 @@ def _solve_top(p, w, q, v, ah, av):
     ``ah``, ``av``: accelerations of the ground [m/s²].
     """
     k = p.count - 1
+    # acceleration without contact forces, and one over mass and moment of inertia
     fx, fy = -ah, -(p.g + av)
     light, slow = p.inverse[3 * k], p.inverse[3 * k + 2]
     w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0

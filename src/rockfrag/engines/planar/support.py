@@ -71,7 +71,10 @@ def least_support_margin(p, w, q, v):
 
 @kernel
 def change_spring(p, w):
-    """Let the hysteretic part of a spring that fails yield, or unload and be elastic about a new rest."""
+    """Let the hysteretic part of a spring change, if ``w.spring_fails`` says that it is due.
+
+    It yields where it was elastic; where it yielded it unloads, and is elastic about a new rest.
+    """
     if w.spring_fails == 0:
         return
     w.spring_fails = 0

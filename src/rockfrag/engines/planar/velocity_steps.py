@@ -36,7 +36,8 @@ LEDGERS = ("work", "friction_loss", "impact_loss", "tied")
 _LARGEST = ("peak_rotation", "peak_velocity", "peak_slip", "slid")
 _COUNTED = ("flights", "impacts", "paradoxes", "several_modes", "given_way")
 _LAST = ("overturned_body", "parted_contact", "leaning")
-ROOM = 256  # contact events of one instant
+# contact events that are kept at first, of one instant, and of a part of the motion
+ROOM, ROOM_OF_PART = 256, 1024
 
 
 def run(cases: Cases) -> Outcomes:
@@ -151,7 +152,9 @@ class Between:
             piece.ground, piece.upward, 1.0, piece.dt, int(steps), piece.free
         )
         rows = piece.ground.size + piece.free if keeps else 0
-        part = self._integrate(self.body, shaking, rows=rows, room=1024 if keeps else 0)
+        part = self._integrate(
+            self.body, shaking, rows=rows, room=ROOM_OF_PART if keeps else 0
+        )
         self._add(piece.begin)
         return self._placed(part, piece.begin)
 

@@ -196,10 +196,14 @@ def _wall_breaks(p, w, k, limits):
 
 @kernel
 def _contact_breaks(p, w, k, resultant, limits):
-    """Whether contact k breaks law 8 or 9 by what it has given: x, y [N s], moment about the origin [N s m].
+    """Whether contact k breaks law 8 or 9 by the ``resultant`` that it has given.
 
-    The ``resultant`` is split into a shear and the normal impulses of the ends that touch. Where none does it must
-    vanish; where one does it must pass through that end.
+    That is x, y [N s] and the moment about the origin, clockwise [N s m], split into a shear and the normal
+    impulses of the ends that touch. Where none does it must vanish; where one does it must pass through that end;
+    and no end may pull. A law of restitution may give a couple, or an impulse within the base: then (not
+    ``limits.plastic``) it may pass beside the one end, and one of both may pull as long as both together press.
+    Last, the shear must be within Coulomb's limit: of kinetic friction where it brakes the slip before, else of
+    static.
     """
     push_x, push_y, turn = resultant
     slack, allowed, plastic = limits.speed, limits.impulse, limits.plastic

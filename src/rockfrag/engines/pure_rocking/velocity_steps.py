@@ -70,12 +70,14 @@ class SteppedCase:
         parts: list[Followed] = []
         for piece in pieces_of(self.case):
             if piece.jump is not None:
-                state, event = self._jumped(state, piece, whole)
+                state, contact_event = self._jumped(state, piece, whole)
                 # what the jump adds is work of the base, not a loss of the contact
-                work += float(event[0]["energy_after"] - event[0]["energy_before"])
-                event["energy_before"] = event["energy_after"]
+                work += float(
+                    contact_event[0]["energy_after"] - contact_event[0]["energy_before"]
+                )
+                contact_event["energy_before"] = contact_event["energy_after"]
                 whole["contact_events"] += 1
-                parts.append(_jump_part(event, is_first=not parts))
+                parts.append(_jump_part(contact_event, is_first=not parts))
             found = self._through(piece, state, keeps=keeps)
             found.contact_events["time"] += piece.begin
             found.samples["work"] += work
@@ -137,12 +139,12 @@ class SteppedCase:
         after["omega2"], after["c2"] = rate, pivot
         if pivot:
             self._ask(pivot, theta, rate - omega, piece, summary)
-        event = np.zeros(1, kept.CONTACT_EVENT)
-        event["time"], event["kind"] = piece.begin, VELOCITY_STEP
-        event["before"], event["after"] = state, after
-        event["energy_before"] = self._energy(int(state["c2"]), omega)
-        event["energy_after"] = self._energy(pivot, rate)
-        return after, event
+        contact_event = np.zeros(1, kept.CONTACT_EVENT)
+        contact_event["time"], contact_event["kind"] = piece.begin, VELOCITY_STEP
+        contact_event["before"], contact_event["after"] = state, after
+        contact_event["energy_before"] = self._energy(int(state["c2"]), omega)
+        contact_event["energy_after"] = self._energy(pivot, rate)
+        return after, contact_event
 
     def _energy(self, pivot: int, omega: float) -> float:
         """Kinetic energy [J] relative to the base, of rocking on a pivot (0: none) at a rate [rad/s]."""
@@ -193,17 +195,17 @@ def blank_summary(start: np.void) -> np.void:
     return found
 
 
-def _jump_part(event: Records, *, is_first: bool) -> Followed:
-    """What a jump adds: its contact ``event`` and, before everything else, the sample that it begins with."""
+def _jump_part(contact_event: Records, *, is_first: bool) -> Followed:
+    """What a jump adds: its ``contact_event`` and, before everything else, the sample that it begins with."""
     sample = np.zeros(1 if is_first else 0, kept.SAMPLE)
     for name in ("theta2", "omega2", "c2"):
-        sample[name] = event["before"][name][: sample.size]
+        sample[name] = contact_event["before"][name][: sample.size]
     none = np.zeros(sample.size)
     return Followed(
-        summary=blank_summary(event["before"][0]),
+        summary=blank_summary(contact_event["before"][0]),
         samples=sample,
         time=none,
-        contact_events=event,
+        contact_events=contact_event,
         ground=none,
         upward=none,
     )

@@ -336,6 +336,7 @@ def interface_impact(after, products, omega1, omega2):
     ``after``: constants (TWO) of the contact state; ``products``: K11 to K22 of new and old pivots
     (``IMPACT.both11`` and its like); ``omega1``, ``omega2``: rates before, in the unit of those returned.
     """
+    # M12 = E cos Δ + F sin Δ at Δ = 0
     m11, m12, m22 = after.m11, after.e, after.m22
     l1 = products.both11 * omega1 + products.both12 * omega2
     l2 = products.both21 * omega1 + products.both22 * omega2

@@ -82,8 +82,8 @@ def crossing(q, end):
     """Find the time τ [-] when Σ q_k τᵏ falls through zero, given that it is negative at the time ``end``.
 
     ``q`` has eight coefficients. The series starts at zero or above; returned is 0 if it never was positive.
-    Chebyshev's method from the root of the parabola that it begins as.  A q that dips below zero and comes back
-    before is for ``closing_time``.
+    Chebyshev's method from the root of the parabola that it begins as.  A q that dips below zero and is above it
+    again at ``end`` is for ``closing_time``.
     """
     q0, q1, q2, q3, q4, q5, q6, q7 = q
     if q0 <= 0.0:
@@ -261,7 +261,9 @@ def graze(gap, rates):
 def guess_between(bracket):
     """Next point of regula falsi in a bracket, off both of its ends.
 
-    A bracket is (low, hold at low, ≥ 0, high, hold at high, < 0, which end moved last: 1 low, -1 high, 0 none).
+    The hold of a contact, a function of the time, is what keeps it closed, negative where it would have to be
+    pulled. A bracket is (low, hold at low, ≥ 0, high, hold at high, < 0, which end moved last: 1 low, -1 high, 0
+    none).
     """
     low, at_low, high, at_high, _ = bracket
     tau = high - at_high * (high - low) / (at_high - at_low)

@@ -202,24 +202,27 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
         substep = _substep(body, shaking, k, sub)
         # part of the substep that has passed
         tau = 0.0
+        # of so many that forcing has not ended them (:func:`_land`) the rest of the sample is left out
         while tau < 1.0 and count <= MAX_CONTACT_EVENTS_PER_STEP + 20:
             left = 1.0 - tau
             step = _rest_of(substep, tau)
             fill_series(body, state, step, work.series)
-            event = _next_contact_event(body, state, step, work.series, work.trial)
-            at = min(1.0, event.when)
+            contact_event = _next_contact_event(
+                body, state, step, work.series, work.trial
+            )
+            at = min(1.0, contact_event.when)
             lifts = _follow(body, step, at, summary, work)
             if lifts != roots.NEVER and math.isnan(summary.lost_contact):
                 clock = _clock(shaking, k, sub + tau + lifts * left)
                 _note_lifting(body, clock, state, contact_events, summary)
             tau += at * left
-            if event.when > 1.0:
+            if contact_event.when > 1.0:
                 break
             count += 1
             state.ground = substep.ground + substep.rise * tau
             state.gravity = substep.gravity + substep.lift * tau
             kind = _through_contact_event(
-                body, shaking, (k, sub + tau), event, count, summary, work
+                body, shaking, (k, sub + tau), contact_event, count, summary, work
             )
             clock = _clock(shaking, k, sub + tau)
             record.keep_contact_event(
@@ -237,7 +240,7 @@ def _note_lifting(body, clock, state, contact_events, summary):
 
 
 @kernel
-def _through_contact_event(body, shaking, instant, event, count, summary, work):
+def _through_contact_event(body, shaking, instant, contact_event, count, summary, work):
     """Take the state of ``work`` through a contact event; the state before it is left in ``work.before``.
 
     Parameters
@@ -245,7 +248,7 @@ def _through_contact_event(body, shaking, instant, event, count, summary, work):
     body : record ``BODY``
     shaking : a :class:`Shaking`
     instant : a sample, and the substeps that have passed since [-]
-    event : a :class:`NextEvent`
+    contact_event : a :class:`NextEvent`
     count : number of contact events since the sample, this one included
     summary : record ``SUMMARY``, changed in place
     work : record ``SCRATCH``, whose state has come to the instant
@@ -256,20 +259,20 @@ def _through_contact_event(body, shaking, instant, event, count, summary, work):
     """
     state = work.state
     # contacts that close do so exactly, and what stands on an open contact turns with it
-    if event.fails == 0 and event.closes1:
+    if contact_event.fails == 0 and contact_event.closes1:
         state.theta1 = 0.0
-    if event.fails == 0 and (event.closes2 or state.c2 == 0):
+    if contact_event.fails == 0 and (contact_event.closes2 or state.c2 == 0):
         state.theta2 = state.theta1
     record.copy_state(state, work.before)
-    if event.fails != 0:
-        no_time_passed = event.when == 0.0
+    if contact_event.fails != 0:
+        no_time_passed = contact_event.when == 0.0
         state.c1, state.c2 = contact_states.release(
-            body, state, event.fails, no_time_passed
+            body, state, contact_event.fails, no_time_passed
         )
         return record.OPENING
     k, passed = instant
     forced = count > MAX_CONTACT_EVENTS_PER_STEP
-    closes = event.closes1, event.closes2
+    closes = contact_event.closes1, contact_event.closes2
     part = k, passed / shaking.substeps
     return _land(body, shaking, part, closes, forced, summary, work)
 
@@ -421,7 +424,8 @@ def _failing_time(body, contact, step, series, end, trial):
     """Find when in [0, end] of a step a closed contact would first have to be pulled; NEVER if it stays pressed.
 
     ``contact`` and ``trial`` as of :func:`_hold_at`. The instant is bracketed by the step's ends, or by its start
-    and a dip between them, and found by regula falsi.
+    and a dip between them, and found by regula falsi. A contact that is pulled at the start alone, as it may by
+    rounding just after a contact event, and pressed from then to the end counts as pressed.
     """
     at_start = _hold_at(body, contact, step, series, 0.0, trial)
     at_end = _hold_at(body, contact, step, series, end, trial)

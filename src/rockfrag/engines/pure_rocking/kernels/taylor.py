@@ -155,10 +155,10 @@ def _fill_two(body, c1, c2, step, series):
 def _coupled(series, k, coupling, right):
     """Return both right-hand sides less what lower orders of the other rotation add to coefficient k.
 
-    That is D θ2'² + (M12 - m₀) θ2'' for the first, and (M12 - m₀) θ1'' - D θ1'² for the second, with Δ = θ2 - θ1,
-    M12 = E cos Δ + F sin Δ and D = F cos Δ - E sin Δ. m₀, coefficient 0 of M12, stands on the left side, in the
-    mass matrix, so that the sum with M12 begins at its coefficient 1. ``coupling`` is E and F, ``right`` both
-    right-hand sides.
+    What they add is D θ2'² + (M12 - m₀) θ2'' for the first, and (M12 - m₀) θ1'' - D θ1'² for the second, with
+    Δ = θ2 - θ1, M12 = E cos Δ + F sin Δ and D = F cos Δ - E sin Δ. m₀, coefficient 0 of M12, stands on the left
+    side, in the mass matrix, so that the sum with M12 begins at its coefficient 1. ``coupling`` is E and F,
+    ``right`` both right-hand sides; ``two`` is the second rotation.
     """
     (e, f), (right1, right2) = coupling, right
     first, two, between = series.one.angle, series.two.angle, series.between

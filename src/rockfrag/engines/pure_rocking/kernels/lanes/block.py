@@ -171,9 +171,11 @@ def _keep_extremes(lane, i, psi, omega):
     """Store the extremes of lane i before its step, and take ψ and ψ' [1/sample] of the step into them."""
     low = psi * lane.per_angle[i]
     near = low * low + omega * omega * lane.per_speed[i]
-    lane.was_low[i], lane.low[i] = lane.low[i], min(lane.low[i], low)
-    lane.was_fast[i], lane.fast[i] = lane.fast[i], max(lane.fast[i], abs(omega))
-    lane.was_near[i], lane.near[i] = lane.near[i], min(lane.near[i], near)
+    was_low, was_fast, was_near = lane.low[i], lane.fast[i], lane.near[i]
+    lane.was_low[i], lane.was_fast[i], lane.was_near[i] = was_low, was_fast, was_near
+    lane.low[i] = min(was_low, low)
+    lane.fast[i] = max(was_fast, abs(omega))
+    lane.near[i] = min(was_near, near)
 
 
 @entry_kernel
@@ -523,6 +525,7 @@ def _take_up(lane, i, number, ensemble, motions):
     lane.low[i], lane.fast[i], lane.near[i] = 1.0, 0.0, math.inf
     lane.factor[i] = ensemble.factors[motion, scale]
     lane.tau[i] = 0.0
+    # the motion as it is sampled for this body
     sampled = ensemble.rows[body, motion]
     lane.first[i] = motions.offsets[sampled]
     lane.k[i] = motions.offsets[sampled]

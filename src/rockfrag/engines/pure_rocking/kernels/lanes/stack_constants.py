@@ -140,11 +140,13 @@ def _fill_interface_hold(body, s1, s2, hh, hold):
 def _fill_closing(body, c1, c2, products):
     """Fill the kinetic products by which momentum about new pivots follows from the velocities before an impact.
 
-    ``ground``: the ground's contact comes down on its other pivot; ``both``: the interface's. The other contact
-    stays open meanwhile.
+    ``products.ground``: the ground's contact comes down on its other pivot, of which only K11 is needed, as the
+    other products are in the mass matrices (``impact.ground_impact``); ``products.both11`` to ``both22``: the
+    interface's. The other contact stays open meanwhile.
     """
     s1, s2 = equations.pivot(c1), equations.pivot(c2)
-    # cosine and sine of what the statue is turned on its pedestal by: nothing
+    # cosine and sine of what the statue is turned on its pedestal by: nothing where the interface closes, and K11
+    # does not depend on it
     old, level = (s1, s2), (1.0, 0.0)
     products.ground, _, _, _ = equations.metric(body, (-s1, s2), old, level)
     k11, k12, k21, k22 = equations.metric(body, (s1, -s2), old, level)
