@@ -4,33 +4,36 @@ In: rows (motion at a contact per coordinate of both its bodies), columns (what 
 right-hand sides of each contact, at most three.  Out: the forces and how they change the motion
 (``docs/contact.md``, 3).
 
-A column of bodies is a chain: what hangs on a body from above answers a force at its base like one body of another
-compliance.  So contacts are eliminated from the uppermost down, each by at most three equations, and what is above
-the first contact that has changed since the last solution stands.  Contacts with walls close the chain to loops;
-their equations are solved all together.
-
-``p`` and ``w`` are records ``BODY`` and ``WORK`` (``records.py``). Equations of contact k begin at 3 k; places of
-a row or a column are the coordinates x, y and θ of the body below (0 to 2) and of that above (3 to 5).
+A column of bodies is a chain: what hangs on a body from above resists its motion like one body of another
+inertia (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7).  So contacts are eliminated from the
+uppermost down, and what is above the first contact that has changed since the last solution stands.  Contacts
+with walls close the chain to loops; their equations are solved all together.
 """
 
 from rockfrag.engines.compile.jit import inlined_kernel, kernel
 
 SINGULAR = 1e-9
 """Pivot over the largest coefficient of its equation below which equations say the same thing twice."""
-SMALL = 1e-7  # pivot over its coefficient before elimination below which contacts are not eliminated one by one
+SMALL = 1e-7  # determinant over its terms below which a body is not taken to yield
+NOTHING = (0.0, 0.0, 0.0)
+SAME = (
+    (1.0, 0.0, 0.0),
+    (0.0, 1.0, 0.0),
+    (0.0, 0.0, 1.0),
+)  # motion of a body that is carried along
 
 
 @kernel
-def solve_equations(p, w, standing, changed):
-    """Find forces ``w.force`` and the change of motion ``w.moved`` of all above what stands; False if singular.
+def solve_equations(p, w, q, standing, changed):
+    """Find ``w.force`` and the change of motion ``w.moved`` of all above what stands; False if singular.
 
-    ``standing``: number of bodies from below that stand still; ``changed``: the uppermost contact of the column
-    whose equations are not those of the last call.
+    ``changed``: the uppermost contact of the column whose equations are not those of the last call; ``q`` has x, y
+    and θ of each body, one after the other.
     """
     if _is_chain(p, w):
         solved = True
         for k in range(changed, standing - 1, -1):
-            solved = solved and _eliminate_contact(p, w, k, k > standing)
+            solved = solved and _eliminate_contact(p, w, q, k, k > standing)
         if solved:
             _substitute(p, w, standing)
             return True
@@ -48,214 +51,247 @@ def _is_chain(p, w):
     return alone
 
 
-@kernel
-def _eliminate_contact(p, w, k, on_body):
-    """Eliminate the forces of contact k, under all that hangs on its body; False if singular.
+@inlined_kernel
+def _vector(a, i, first):
+    """Three entries of row i, from the ``first`` on."""
+    return a[i, first], a[i, first + 1], a[i, first + 2]
 
-    Equation 3' of ``docs/contact.md``: A λ = r - C e - C' M⁻¹ F, with K the compliance of body k and all above, e
-    its motion by forces above, M the mass below, F the force at its base, C and D rows and columns at body k, C'
-    and D' at the body below. So λ = g - H F: ``w.gain`` has g = A⁻¹ (r - C e), ``w.shared`` H = A⁻¹ C' M⁻¹.
+
+@inlined_kernel
+def _matrix(a, k):
+    """Rows of matrix k."""
+    return (
+        (a[k, 0, 0], a[k, 0, 1], a[k, 0, 2]),
+        (a[k, 1, 0], a[k, 1, 1], a[k, 1, 2]),
+        (a[k, 2, 0], a[k, 2, 1], a[k, 2, 2]),
+    )
+
+
+@inlined_kernel
+def _dot(a, b):
+    """Inner product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inlined_kernel
+def _cross(a, b):
+    """Cross product."""
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+@inlined_kernel
+def _times(rows, a):
+    """Product of a matrix and a vector."""
+    return _dot(rows[0], a), _dot(rows[1], a), _dot(rows[2], a)
+
+
+@inlined_kernel
+def _row_times(a, rows):
+    """Product of a row and a matrix."""
+    return (
+        a[0] * rows[0][0] + a[1] * rows[1][0] + a[2] * rows[2][0],
+        a[0] * rows[0][1] + a[1] * rows[1][1] + a[2] * rows[2][1],
+        a[0] * rows[0][2] + a[1] * rows[1][2] + a[2] * rows[2][2],
+    )
+
+
+@inlined_kernel
+def _scaled(x, a):
+    """Vector x a."""
+    return x * a[0], x * a[1], x * a[2]
+
+
+@inlined_kernel
+def _less(a, x, b):
+    """Vector a - x b."""
+    return a[0] - x * b[0], a[1] - x * b[1], a[2] - x * b[2]
+
+
+@inlined_kernel
+def _plus(a, b):
+    """Vector a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+@inlined_kernel
+def _eliminate_contact(p, w, q, k, on_body):
+    """Eliminate contact k, under all that hangs on its body; False if it is singular.
+
+    Equation 3' of ``docs/contact.md``: a body and all above ask F = J a + w of the contact at its base, with its
+    motion a. The contact lets it move as a = T X a' + t, with X a' its motion if it were welded to the body below,
+    whose motion is a'. ``w.follows`` has T X, ``w.still`` t, ``w.inertia`` J, ``w.asks`` w.
     """
-    size = w.unknowns[k]
     if k == p.count - 1:
         _hang_nothing(p, w, k)
-    _fill_small(p, w, k, on_body)
-    if not _reduce(w.small, size, 7 if on_body else 4):
+    inertia, asks = _matrix(w.inertia, k), _vector(w.asks, k, 0)
+    size, follows = w.unknowns[k], SAME
+    if size == 3:
+        solved, still = _hold(w, k, p.size)
+    elif size == 2:
+        solved, still, follows = _leave_one_way(w, k, inertia, asks)
+    else:
+        solved, still, follows = _press_once(w, k, size, inertia, asks)
+    if not solved:
         return False
-    for i in range(size):
-        w.gain[3 * k + i] = w.small[i, 3]
+    w.still[k, 0], w.still[k, 1], w.still[k, 2] = still
     if on_body:
-        _hang_on_below(p, w, k)
+        _hang_on_below(p, w, q, k, follows)
     return True
 
 
 @inlined_kernel
 def _hang_nothing(p, w, k):
-    """Fill compliance K and motion e of the uppermost body, k: its own inverse masses, and none."""
+    """Let body k resist by its own inertia alone."""
+    own = p.mass[k], p.mass[k], p.inertia[k]
     for d in range(3):
-        w.hanging[k, d] = 0.0
+        w.asks[k, d] = 0.0
         for e in range(3):
-            w.compliance[k, d, e] = p.inverse[3 * k + d] if d == e else 0.0
+            w.inertia[k, d, e] = own[d] if d == e else 0.0
 
 
 @inlined_kernel
-def _fill_small(p, w, k, on_body):
-    """Fill ``w.small``, the small system of contact k: A in columns 0 to 2, r - C e in 3, and C' M⁻¹ in 4 to 6.
-
-    The last ones only where the contact is ``on_body``, not on the ground. Letters as of
-    :func:`_eliminate_contact`.
-    """
-    size, first, lower = w.unknowns[k], 3 * k, 3 * k - 3
-    small = w.small
-    for j in range(size):
-        # K D
-        at = first + j
-        x, y, turn = w.column[at, 3], w.column[at, 4], w.column[at, 5]
-        for d in range(3):
-            w.yields_to[j, d] = (
-                w.compliance[k, d, 0] * x
-                + w.compliance[k, d, 1] * y
-                + w.compliance[k, d, 2] * turn
-            )
-    for i in range(size):
-        at = first + i
-        x, y, turn = w.row[at, 3], w.row[at, 4], w.row[at, 5]
-        hangs = x * w.hanging[k, 0] + y * w.hanging[k, 1] + turn * w.hanging[k, 2]
-        small[i, 3] = w.right[at] - hangs
-        for j in range(size):
-            moves = w.yields_to[j, 0], w.yields_to[j, 1], w.yields_to[j, 2]
-            small[i, j] = x * moves[0] + y * moves[1] + turn * moves[2]
-        if on_body:
-            for d in range(3):
-                small[i, 4 + d] = w.row[at, d] * p.inverse[lower + d]
-            for j in range(size):
-                for d in range(3):
-                    small[i, j] += small[i, 4 + d] * w.column[first + j, d]
+def _hold(w, k, size):
+    """Whether three equations hold a body, and t of its motion; T is 1. ``size``: a length of the bodies [m]."""
+    at = 3 * k
+    first, second = _vector(w.row, at, 3), _vector(w.row, at + 1, 3)
+    third = _vector(w.row, at + 2, 3)
+    across = _cross(second, third)
+    whole = _dot(first, across)
+    if not abs(whole) > SINGULAR * size:
+        return False, NOTHING
+    part = 1.0 / whole
+    still = _scaled(part * w.right[at], across)
+    still = _plus(still, _scaled(part * w.right[at + 1], _cross(third, first)))
+    still = _plus(still, _scaled(part * w.right[at + 2], _cross(first, second)))
+    return True, still
 
 
 @inlined_kernel
-def _hang_on_below(p, w, k):
-    """Keep H, and hang body k on the body below: compliance M⁻¹ (1 - D' H), motion M⁻¹ D' g.
+def _leave_one_way(w, k, inertia, asks):
+    """Whether two equations can be solved, and t and T of the motion that they leave.
 
-    Letters as of :func:`_eliminate_contact`; ``w.small`` has been solved, so that its column 3 holds g and columns
-    4 to 6 hold H.
+    The body moves as they ask plus s S, where S breaks neither and s is such that Z (J a + w) = 0, where Z meets
+    neither force.
     """
-    size, first = w.unknowns[k], 3 * k
-    small = w.small
-    for i in range(size):
-        for d in range(3):
-            w.shared[first + i, d] = small[i, 4 + d]
+    at = 3 * k
+    first, second = _vector(w.row, at, 3), _vector(w.row, at + 1, 3)
+    way = _cross(first, second)
+    idle = _cross(_vector(w.column, at, 3), _vector(w.column, at + 1, 3))
+    idle_inertia = _row_times(idle, inertia)
+    resists = _dot(idle_inertia, way)
+    size = abs(idle_inertia[0] * way[0]) + abs(idle_inertia[1] * way[1])
+    if not abs(resists) > SINGULAR * (size + abs(idle_inertia[2] * way[2])):
+        return False, NOTHING, SAME
+    part = 1.0 / _dot(way, way)
+    asked = _scaled(part * w.right[at], _cross(second, way))
+    asked = _plus(asked, _scaled(part * w.right[at + 1], _cross(way, first)))
+    pivot = 1.0 / resists
+    still = _less(asked, pivot * (_dot(idle_inertia, asked) + _dot(idle, asks)), way)
+    follows = (
+        _less(SAME[0], pivot * way[0], idle_inertia),
+        _less(SAME[1], pivot * way[1], idle_inertia),
+        _less(SAME[2], pivot * way[2], idle_inertia),
+    )
+    return True, still, follows
+
+
+@inlined_kernel
+def _press_once(w, k, size, inertia, asks):
+    """Whether one equation or none can be solved, and t and T of the motion that it leaves.
+
+    With K = 1/J, row c and column d its force is (r + c K w + c X a') / (c K d).
+    """
+    by_x, by_y = _cross(inertia[1], inertia[2]), _cross(inertia[2], inertia[0])
+    by_turn = _cross(inertia[0], inertia[1])
+    whole = _dot(inertia[2], by_turn)
+    largest = abs(inertia[0][0] * by_x[0]) + abs(inertia[1][1] * by_y[1])
+    if not abs(whole) > SMALL * (largest + abs(inertia[2][2] * by_turn[2])):
+        return False, NOTHING, SAME
+    part = 1.0 / whole
+    falls = _yields(by_x, by_y, by_turn, _scaled(-part, asks))
+    if size == 0:
+        return True, falls, (NOTHING, NOTHING, NOTHING)
+    row = _vector(w.row, 3 * k, 3)
+    yields = _yields(by_x, by_y, by_turn, _scaled(part, _vector(w.column, 3 * k, 3)))
+    pivot = _dot(row, yields)
+    if pivot == 0.0:
+        return False, NOTHING, SAME
+    light = 1.0 / pivot
+    still = _less(falls, light * (_dot(row, falls) - w.right[3 * k]), yields)
+    follows = (
+        _scaled(light * yields[0], row),
+        _scaled(light * yields[1], row),
+        _scaled(light * yields[2], row),
+    )
+    return True, still, follows
+
+
+@inlined_kernel
+def _yields(by_x, by_y, by_turn, force):
+    """Motion by a force on what yields to its parts by the three vectors."""
+    yields = _plus(_scaled(force[0], by_x), _scaled(force[1], by_y))
+    return _plus(yields, _scaled(force[2], by_turn))
+
+
+@inlined_kernel
+def _hang_on_below(p, w, q, k, follows):
+    """Keep T X, and hang body k on the body below: J' = M + Xᵀ J T X and w' = Xᵀ (J t + w)."""
+    inertia, still = _matrix(w.inertia, k), _vector(w.still, k, 0)
+    across, up = q[3 * k] - q[3 * k - 3], q[3 * k + 1] - q[3 * k - 2]
+    asks = _plus(_times(inertia, still), _vector(w.asks, k, 0))
+    _hang_nothing(p, w, k - 1)
+    if w.unknowns[k] == 0:
+        asks = NOTHING
+    w.asks[k - 1, 0], w.asks[k - 1, 1] = asks[0], asks[1]
+    w.asks[k - 1, 2] = asks[2] + up * asks[0] - across * asks[1]
     for d in range(3):
-        light = p.inverse[first - 3 + d]
-        hangs, by_x, by_y, by_turn = 0.0, 0.0, 0.0, 0.0
-        for j in range(size):
-            by = light * w.column[first + j, d]
-            hangs += by * small[j, 3]
-            by_x -= by * small[j, 4]
-            by_y -= by * small[j, 5]
-            by_turn -= by * small[j, 6]
-        w.hanging[k - 1, d] = hangs
-        w.compliance[k - 1, d, 0] = by_x
-        w.compliance[k - 1, d, 1] = by_y
-        w.compliance[k - 1, d, 2] = by_turn
-        w.compliance[k - 1, d, d] += light
-
-
-@inlined_kernel
-def _reduce(a, size, width):
-    """Solve at most three equations by Gauss's elimination; False if they are singular.
-
-    Row i of ``a`` has the coefficients of equation i in columns 0 to 2, and its right-hand sides from column 3 to
-    ``width`` - 1, which become the solutions. Two equations exchange rows for the larger pivot; three do not: they
-    are those of a contact that sticks, symmetric but for what slides above.
-    """
-    if size == 1:
-        return _reduce_one(a, width)
-    if size == 2:
-        return _reduce_two(a, width)
-    if size == 3:
-        return _reduce_three(a, width)
-    return True
-
-
-@inlined_kernel
-def _reduce_one(a, width):
-    """Solve one equation as :func:`_reduce` does."""
-    if a[0, 0] == 0.0:
-        return False
-    pivot = 1.0 / a[0, 0]
-    for c in range(3, width):
-        a[0, c] *= pivot
-    return True
-
-
-@inlined_kernel
-def _reduce_two(a, width):
-    """Solve two equations as :func:`_reduce` does; row i has the larger pivot.
-
-    ``b`` has the coefficients in that order, ``c11`` is that of the second equation after elimination.
-    """
-    swap = abs(a[1, 0]) > abs(a[0, 0])
-    i, j = (1, 0) if swap else (0, 1)
-    b00, b01, b10, b11 = a[i, 0], a[i, 1], a[j, 0], a[j, 1]
-    if b00 == 0.0:
-        return False
-    p0 = 1.0 / b00
-    f1 = b10 * p0
-    c11 = b11 - f1 * b01
-    if not abs(c11) > SINGULAR * (abs(b11) + abs(f1 * b01)):
-        return False
-    p1 = 1.0 / c11
-    for c in range(3, width):
-        top = a[i, c]
-        bottom = (a[j, c] - f1 * top) * p1
-        a[0, c], a[1, c] = (top - b01 * bottom) * p0, bottom
-    return True
-
-
-@inlined_kernel
-def _reduce_three(a, width):
-    """Solve three equations as :func:`_reduce` does, without exchange; False where a pivot is small.
-
-    ``b`` has the coefficients, ``c`` and ``d`` those of the second and third equation after one and two
-    eliminations, ``f`` the factors of equations that are taken off, ``p`` one over each pivot.
-    """
-    b00, b01, b02 = a[0, 0], a[0, 1], a[0, 2]
-    b10, b11, b12 = a[1, 0], a[1, 1], a[1, 2]
-    b20, b21, b22 = a[2, 0], a[2, 1], a[2, 2]
-    if not abs(b00) > SMALL * (abs(b01) + abs(b02)):
-        return False
-    p0 = 1.0 / b00
-    f1, f2 = b10 * p0, b20 * p0
-    c11, c12 = b11 - f1 * b01, b12 - f1 * b02
-    c21, c22 = b21 - f2 * b01, b22 - f2 * b02
-    if not abs(c11) > SMALL * (abs(b11) + abs(c12)):
-        return False
-    p1 = 1.0 / c11
-    f3 = c21 * p1
-    d22 = c22 - f3 * c12
-    if not abs(d22) > SMALL * abs(b22):
-        return False
-    p2 = 1.0 / d22
-    for c in range(3, width):
-        top = a[0, c]
-        middle = a[1, c] - f1 * top
-        bottom = (a[2, c] - f2 * top - f3 * middle) * p2
-        middle = (middle - c12 * bottom) * p1
-        a[2, c], a[1, c] = bottom, middle
-        a[0, c] = (top - b01 * middle - b02 * bottom) * p0
-    return True
+        row = follows[d]
+        w.follows[k, d, 0], w.follows[k, d, 1] = row[0], row[1]
+        w.follows[k, d, 2] = row[2] + up * row[0] - across * row[1]
+    if w.unknowns[k] == 0:
+        return
+    moves = _matrix(w.follows, k)
+    by_x, by_y = _row_times(inertia[0], moves), _row_times(inertia[1], moves)
+    by_turn = _row_times(inertia[2], moves)
+    for d in range(3):
+        w.inertia[k - 1, 0, d] += by_x[d]
+        w.inertia[k - 1, 1, d] += by_y[d]
+        w.inertia[k - 1, 2, d] += by_turn[d] + up * by_x[d] - across * by_y[d]
 
 
 @kernel
 def _substitute(p, w, standing):
-    """Forces and changes of motion from the lowest contact up, of what :func:`_eliminate_contact` has left.
-
-    Each force at contact k is ``w.gain`` less ``w.shared`` times what the contact below does to the body between.
-    """
-    # force and moment of a contact on the body above it; columns 0 to 2 of ``w.column`` are of the body below
-    push_x = push_y = twist = 0.0
+    """Changes of motion and forces from the lowest contact up, of what :func:`_eliminate_contact` has left."""
+    moved = NOTHING
     for k in range(standing, p.count):
-        first, body = 3 * k, 3 * k
-        own_x = own_y = own_twist = 0.0
-        for i in range(first, first + w.unknowns[k]):
-            force = w.gain[i]
-            if k > standing:
-                force -= w.shared[i, 0] * push_x + w.shared[i, 1] * push_y
-                force -= w.shared[i, 2] * twist
-            w.force[i] = force
-            own_x += w.column[i, 3] * force
-            own_y += w.column[i, 4] * force
-            own_twist += w.column[i, 5] * force
-            if k > standing:
-                for d in range(3):
-                    w.moved[body - 3 + d] += (
-                        p.inverse[body - 3 + d] * w.column[i, d] * force
-                    )
-        push_x, push_y, twist = own_x, own_y, own_twist
-        w.moved[body] = p.inverse[body] * push_x
-        w.moved[body + 1] = p.inverse[body + 1] * push_y
-        w.moved[body + 2] = p.inverse[body + 2] * twist
+        at, still = 3 * k, _vector(w.still, k, 0)
+        moved = (
+            _plus(still, _times(_matrix(w.follows, k), moved))
+            if k > standing
+            else still
+        )
+        w.moved[at], w.moved[at + 1], w.moved[at + 2] = moved
+        if w.unknowns[k] == 0:
+            continue
+        asked = _plus(_times(_matrix(w.inertia, k), moved), _vector(w.asks, k, 0))
+        # forces whose columns add up to what is asked
+        first = _vector(w.column, at, 3)
+        if w.unknowns[k] == 1:
+            w.force[at] = _dot(asked, first) / _dot(first, first)
+            continue
+        second = _vector(w.column, at + 1, 3)
+        third = _vector(w.column, at + 2, 3)
+        across = _cross(first, second)
+        if w.unknowns[k] == 2:
+            third = across
+        part = 1.0 / _dot(across, third)
+        w.force[at] = part * _dot(asked, _cross(second, third))
+        w.force[at + 1] = part * _dot(asked, _cross(third, first))
+        w.force[at + 2] = part * _dot(asked, across)
 
 
 @kernel

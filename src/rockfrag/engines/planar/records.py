@@ -126,15 +126,11 @@ WORK = np.dtype(
         *fields("row column", 3 * ALL, 6),
         *fields("right force", 3 * ALL),
         *fields("moved", 3 * MOST),  # change of motion by all forces
-        # of each contact forces with nothing below, and what a force at the base of the body below takes of them;
-        # compliance of each body with what hangs on it, and its motion by that alone
-        *fields("gain", 3 * ALL),
-        *fields("shared", 3 * ALL, 3),
-        *fields("compliance", MOST, 3, 3),
-        *fields("hanging", MOST, 3),
-        *fields("small", 3, 7),
-        *fields("yields_to", 3, 3),
-        # memory for a row; all equations at once, and which they are
+        # of each body and all that hangs on it: inertia, and what it asks of the contact at its base where it does
+        # not move; its motion per motion of the body below, and with that at rest
+        *fields("inertia follows", MOST, 3, 3),
+        *fields("asks still", MOST, 3),
+        # all equations at once, and which they are
         *fields("light", 6),
         *fields("matrix", 3 * ALL, 3 * ALL),
         *fields("joint largest", 3 * ALL),
@@ -145,6 +141,7 @@ WORK = np.dtype(
         # speeds at which open ends part at the start of a step
         *fields("early", ALL, 2),
         *whole("fails", ALL, 7),  # [contact, channel] what has become negative
+        *fields("least", ALL),  # least margin of each contact that was watched
         # of each interface normal and tangent of its left and its right end, and a couple: motion per coordinate
         # of the bodies below and above, and motion without forces [interface, row]
         *fields("basis", ALL, 5, 6),

@@ -290,12 +290,15 @@ def solve_generally(p, w, q, v, sought, standing):
         # stands, and 3 to 5 of the body above
         base = 3 * p.upper[k] - 3
         begin = 3 if k == standing or p.lower[k] < 0 else 0
+        if begin == 0 and not sought.impact and p.ties + p.is_sprung == 0:
+            # two bodies without forces do not move relative to each other
+            continue
         for i in range(3 * k, 3 * k + w.unknowns[k]):
             for d in range(begin, 6):
                 w.right[i] -= w.row[i, d] * w.out[base + d]
     # what a search has listed no longer stands
     w.listed[:] = -1
-    if not solve_equations(p, w, standing, p.count - 1):
+    if not solve_equations(p, w, q, standing, p.count - 1):
         return False
     for d in range(3 * standing, 3 * p.count):
         w.out[d] += w.moved[d]
