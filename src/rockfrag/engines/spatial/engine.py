@@ -54,7 +54,8 @@ class SpatialOutcome:
     overturned: bool  # whether it fell
     certain_time: float  # instant from which the fall was certain [s]; NaN without one
     fall_direction: float  # from x towards y [rad]; NaN without a fall
-    fell_over: str  # "edge 1-2", "vertex 2", "rim", "flight"; empty without a fall
+    # on the ground: "edge 1-2", "vertex 2", "rim", or "flight" without any; empty without a fall
+    fell_over: str
     # largest tilt over that of unstable balance [-]; infinite if it fell
     peak_rotation: float
     peak_tilt: float  # largest tilt until the outcome was known [rad]
