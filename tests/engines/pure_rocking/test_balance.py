@@ -35,11 +35,10 @@ def drawn(rng, bodies):
     return as_system(random_block(rng) if bodies == 1 else random_stack(rng))
 
 
-@pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("bodies", [1, 2])
-def test_what_a_pivot_pushes_moves_all_above_it(bodies, seed):
-    rng, seen = np.random.default_rng([bodies, seed]), Counter()
-    for _ in range(3):
+@pytest.mark.parametrize(("bodies", "cases"), [(1, 12), (2, 12)])
+def test_what_a_pivot_pushes_moves_all_above_it(bodies, cases):
+    rng, seen = np.random.default_rng(bodies), Counter()
+    for _ in range(cases):
         system = drawn(rng, bodies)
         column = witness.Column.of(system, G)
         start, rate = rng.uniform(-8, 8, 2), rng.uniform(-60, 60, 2)
@@ -55,7 +54,7 @@ def test_what_a_pivot_pushes_moves_all_above_it(bodies, seed):
             for number in range(bodies):
                 pushed = forces[number], float(moments[number])
                 seen[check_contact(column, found, k, number, *pushed)] += 1
-    assert "rocks" in seen
+    assert set(seen) == {"stands", "rocks"}
 
 
 def largest_rotation(system, theta):
@@ -69,26 +68,27 @@ def largest_rotation(system, theta):
     return ratios.max(axis=0), ratios.argmax(axis=0)
 
 
-@pytest.mark.parametrize("scale", [0.4, 0.6, 0.8])
-@pytest.mark.parametrize("seed", [1, 2])
-@pytest.mark.parametrize("bodies", [1, 2])
-def test_an_ensemble_has_the_peaks_of_single_histories(bodies, seed, scale):
-    rng = np.random.default_rng([10 + bodies, seed])
+@pytest.mark.parametrize(("bodies", "cases", "least"), [(1, 3, 4), (2, 3, 2)])
+def test_an_ensemble_has_the_peaks_of_single_histories(bodies, cases, least):
+    rng, compared = np.random.default_rng(10 + bodies), 0
     run = ensembles.run_blocks if bodies == 1 else ensembles.run_stacks
-    system = drawn(rng, bodies)
-    time = DT * np.arange(60)
-    # one push: what comes long after it is smaller
-    lasts = rng.uniform(0.1, 0.25)
-    push = np.where(time < lasts, np.sin(math.pi * time / lasts), 0.0)
-    up = 2.0 * np.sin(2 * math.pi * rng.uniform(3.0, 6.0) * time)
-    motion = ground_motion(rng.choice([-G, G]) * push, DT, up)
-    many = run(Cases((system,), (motion,), np.array([[scale]]), Request(g=G)))
-    one = histories.history(Case(system, motion, scale, Request(g=G)))
-    fell = bool(many.overturned[0, 0, 0])
-    assert fell or not one.overturned
-    peaks, at = largest_rotation(system, one.theta)
-    if not fell and at.max() < 40 and peaks.max() > 1e-2:
-        found = many.peak_rotation[0, 0, 0]
-        np.testing.assert_allclose(found, peaks, rtol=0.02, atol=2e-3)
-        distance = many.unstable_distance[0, 0, 0]
-        assert distance == pytest.approx(one.unstable_distance, rel=0.02)
+    for _ in range(cases):
+        system = drawn(rng, bodies)
+        time = DT * np.arange(70)
+        # one push: what comes long after it is smaller
+        lasts = rng.uniform(0.1, 0.25)
+        push = np.where(time < lasts, np.sin(math.pi * time / lasts), 0.0)
+        up = 2.0 * np.sin(2 * math.pi * rng.uniform(3.0, 6.0) * time)
+        motion = ground_motion(rng.choice([-G, G]) * push, DT, up)
+        scales = np.array([[0.4, 0.6, 0.8]])
+        many = run(Cases((system,), (motion,), scales, Request(g=G)))
+        for k, scale in enumerate(scales[0]):
+            one = histories.history(Case(system, motion, scale, Request(g=G)))
+            fell = bool(many.overturned[0, 0, k])
+            assert fell or not one.overturned
+            peaks, at = largest_rotation(system, one.theta)
+            if not fell and at.max() < 40 and peaks.max() > 1e-2:
+                found = many.peak_rotation[0, 0, k]
+                np.testing.assert_allclose(found, peaks, rtol=0.02, atol=2e-3)
+                compared += 1
+    assert compared >= least
