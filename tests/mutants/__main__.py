@@ -51,11 +51,11 @@ GROUPS = (
     Group(
         ("engines/pure_rocking",),
         plain=(
-            "engines/pure_rocking/test_balance.py",
             "engines/pure_rocking/test_statements.py",
             "engines/pure_rocking/test_taylor.py",
         ),
         compiled=(
+            "engines/pure_rocking/test_balance.py",
             "engines/pure_rocking/test_properties.py",
             "engines/pure_rocking/test_restitution_laws.py",
             "engines/pure_rocking/test_velocity_steps.py",
