@@ -43,13 +43,22 @@ _integrate_stacks = kernel(integrate_stacks.py_func)
 
 @kernel
 def multiply_add(call):
-    """Put a multiply-add of numbers of a call into it, which tells whether it rounds once."""
+    """Put ``above`` × ``restitution_factor`` + ``uplift`` into ``uplift``, of any three numbers.
+
+    The page sees by it whether its multiply-add rounds once, as that of the package does.
+    """
     call.uplift = fma(call.above, call.restitution_factor, call.uplift)
 
 
 @kernel
 def describe_shaken(call):
-    """Describe a block, or one on a pedestal, to the lanes; gravity stands in its record already."""
+    """Describe a block, or one on a pedestal, to the lanes; gravity stands in its record already.
+
+    Filled in ``call`` are ``body``, ``fault``, the accelerations ``uplift`` from which on it rocks [m/s²], the
+    ``largest`` restitution that gains no energy, the ``centre`` (x, y [m]) and inertia [kg m²], and ``pivots`` of a
+    lone block, whose measured ratio is ``call.above``. Rocking on one pivot ends by an impact on the other one,
+    hence the restitution of ``-pivot``.
+    """
     body, g = call.body[0], call.body[0].gravity
     upper, lower = entry.shape_of(call.statue), entry.shape_of(call.pedestal)
     has_ratios = call.has_ratios != 0
