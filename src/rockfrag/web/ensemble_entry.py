@@ -55,8 +55,8 @@ def describe_shaken(call):
     """Describe a block, or one on a pedestal, to the lanes; gravity stands in its record already.
 
     Filled in ``call`` are ``body``, ``fault``, the accelerations ``uplift`` from which on it rocks [m/s²], the
-    ``largest`` restitution that gains no energy, the ``centre`` (x, y [m]) and inertia [kg m²], and ``pivots`` of a
-    lone block, whose measured ratio is ``call.above``. Rocking on one pivot ends by an impact on the other one,
+    ``largest`` restitution that gains no energy, the ``centre`` (x, y [m]) and inertia [kg m²], and ``pivots`` of
+    a lone block, whose measured ratio is ``call.above``. Rocking on one pivot ends by an impact on the other one,
     hence the restitution of ``-pivot``.
     """
     body, g = call.body[0], call.body[0].gravity
