@@ -425,6 +425,22 @@ def assess_with(
     return assessed(request, plan, shake_all([request], plan, progress)[0])
 
 
+def check_motions(objects: Standing, motions: MotionSet) -> None:
+    """Refuse an object that is not simulated under these motions as it stands and as it is held."""
+    if _moves_in_space(objects, motions):
+        objects.check_in_space()
+    elif objects.matters_in_space:
+        raise InputError(
+            f"key {objects.matters_in_space[0]}: no record has two components, so the object is answered in "
+            "one plane, which has no use for it; leave it out, or give records of two components."
+        )
+
+
+def _moves_in_space(objects: Standing, motions: MotionSet) -> bool:
+    """Whether an object is shaken by both components of the records at once."""
+    return objects.from_all_sides or (objects.in_space and bool(motions.pairs))
+
+
 def plan_for(
     request: Request, motions: MotionSet, *, brief: bool, holds: bool = True
 ) -> Plan:
@@ -433,13 +449,9 @@ def plan_for(
     ``brief`` takes few motions and levels; ``holds`` tries what may hold it.
     """
     objects = request.objects
-    if objects.from_all_sides or (objects.in_space and motions.pairs):
+    check_motions(objects, motions)
+    if _moves_in_space(objects, motions):
         motions = motions.with_both_components()
-    elif objects.matters_in_space:
-        raise InputError(
-            f"key {objects.matters_in_space[0]}: no record has two components, so the object is answered in "
-            "one plane, which has no use for it; leave it out, or give records of two components."
-        )
     curves = _governing(request, motions)
     hazard = curves[0] if curves else None
     level = _site_level(request, hazard)
@@ -530,12 +542,8 @@ def shake_all(
 
     Returns
     -------
-    What became of each object: in its arrangements, with its changes, on its pad and in one plane. What holds
-    an object and is not simulated in space, where it moves so, is an InputError.
+    What became of each object: in its arrangements, with its changes, on its pad and in one plane.
     """
-    if plan.shaking.motions.both:
-        for request in requests:
-            request.objects.check_in_space()
     meter = None
     if progress is not None:
         meter = Meter(seconds_of(requests, plan), progress)

@@ -21,7 +21,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.assess.answer import RECORDS, Assessment, assessed, plan_for, shake_all
+from rockfrag.assess.answer import (
+    RECORDS,
+    Assessment,
+    assessed,
+    check_motions,
+    plan_for,
+    shake_all,
+)
 from rockfrag.assess.core.decisions import Action
 from rockfrag.assess.core.draws import FEW_MEMBERS
 from rockfrag.assess.core.likelihood import likelihood_of
@@ -280,6 +287,9 @@ def assess_inventory(
     if faults and not (keep_going and requests):
         raise FaultyRows(faults)
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
+    requests = _held_as_simulated(requests, motions, faults)
+    if faults and not (keep_going and requests):
+        raise FaultyRows(faults)
     found = assess_each(requests, motions, progress)
     joint = joint_risk(found)
     losses: dict[Any, float] = {}
@@ -294,6 +304,20 @@ def assess_inventory(
 
     found.sort(key=risk, reverse=True)
     return Inventory(found, motions, joint, faults)
+
+
+def _held_as_simulated(
+    requests: Sequence[Request], motions: MotionSet, faults: list[str]
+) -> list[Request]:
+    """Leave out objects that are not simulated under the motions as they are held; why goes to ``faults``."""
+    kept: list[Request] = []
+    for request in requests:
+        try:
+            check_motions(request.objects, motions)
+            kept.append(request)
+        except InputError as error:
+            faults.append(f"{request.name}: {error}")
+    return kept
 
 
 def assess_each(

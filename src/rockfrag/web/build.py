@@ -215,6 +215,7 @@ def _object(
     text = text.replace("@sqrt(", "@llvm.sqrt.f64(")
     # as what may be fused it is made vectors of; how it is fused is said below
     text = text.replace("@llvm.fma.f64", "@llvm.fmuladd.f64")
+    text = _with_short_names(text)
     # WebAssembly has no symbols that several objects may define
     text = text.replace("= common ", "= internal ")
     module = llvm.parse_assembly(text)
@@ -244,6 +245,16 @@ def _object(
         builder.getModulePassManager().run(module, builder)
     made: bytes = machine.emit_object(module)
     return made
+
+
+def _with_short_names(text: str) -> str:
+    """Name functions by numbers: of names beyond 1024 letters, as those with records have, LLVM reads no more."""
+    numbers: dict[str, int] = {}
+    return re.sub(
+        r'@(_ZN[\w.$]+|"_ZN[^"]+")',
+        lambda found: f"@function{numbers.setdefault(found[0], len(numbers))}",
+        text,
+    )
 
 
 def _with_multiply_adds(text: str, fused: bool) -> str:

@@ -95,18 +95,15 @@ def settle(body, state):
                 if _is_consistent(body, state, t1, t2):
                     return t1, t2
     # within rounding of a threshold: open what its own criterion opens
-    n1 = c1 if c1 != 0 else _pulled_corner(body, GROUND, state)
-    n2 = c2 if c2 != 0 else _pulled_corner(body, INTERFACE, state)
-    return n1, n2
-
-
-@kernel
-def _pulled_corner(body, contact, state):
-    """Corner, ±1, at which a closed contact would have to be pulled, 0 if it is pressed at both."""
-    c1, c2 = state.c1, state.c2
     alpha = model.accelerations(body, c1, c2, state)
-    hold, corner = model.hold(body, contact, (c1, c2), state, alpha)
-    return corner if hold < 0.0 else 0
+    n1, n2 = c1, c2
+    for contact in (GROUND, INTERFACE):
+        hold, corner = model.hold(body, contact, (c1, c2), state, alpha)
+        if contact == GROUND and c1 == 0 and hold < 0.0 and not body.fixed:
+            n1 = corner
+        if contact == INTERFACE and c2 == 0 and hold < 0.0:
+            n2 = corner
+    return n1, n2
 
 
 @kernel
@@ -115,18 +112,19 @@ def _is_consistent(body, state, t1, t2):
 
     Contacts that open have to separate, those that stay closed to be pressed at both corners.
     """
-    contacts = t1, t2
-    alpha = model.accelerations(body, t1, t2, state)
-    good = True
-    if state.c1 == 0 and t1 != 0:
-        good = t1 * alpha[0] > 0.0
-    elif state.c1 == 0:
-        good = model.hold(body, GROUND, contacts, state, alpha)[0] >= 0.0
-    if good and state.c2 == 0 and t2 != 0:
-        good = t2 * (alpha[1] - alpha[0]) > 0.0
-    elif good and state.c2 == 0:
-        good = model.hold(body, INTERFACE, contacts, state, alpha)[0] >= 0.0
-    return good
+    alpha1, alpha2 = model.accelerations(body, t1, t2, state)
+    if state.c1 == 0 and t1 != 0 and not t1 * alpha1 > 0.0:
+        return False
+    if state.c2 == 0 and t2 != 0 and not t2 * (alpha2 - alpha1) > 0.0:
+        return False
+    for contact in (GROUND, INTERFACE):
+        stays = t1 == 0 if contact == GROUND else t2 == 0
+        if stays:
+            there, alpha = (t1, t2), (alpha1, alpha2)
+            hold, _ = model.hold(body, contact, there, state, alpha)
+            if not hold >= 0.0:
+                return False
+    return True
 
 
 @kernel

@@ -124,7 +124,7 @@ def integrate(body, shaking, initial, history, contact_events, summary, work):
     return done
 
 
-@inlined_kernel
+@kernel
 def _note_fall(body, state, clock, summary):
     """Note in the summary a block that lies down at the time ``clock`` [s]; return whether one does."""
     lying1 = abs(state.theta1) >= contact_states.HALF_TURN
@@ -230,7 +230,7 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
             )
 
 
-@inlined_kernel
+@kernel
 def _note_lifting(body, clock, state, contact_events, summary):
     """Note that a normal force first vanishes at the time ``clock`` [s]; the state goes on unchanged."""
     summary.lost_contact = clock
