@@ -7,7 +7,12 @@ import pytest
 
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA
-from rockfrag.assess.inventory import assess_inventory, inventory_table, joint_lines
+from rockfrag.assess.inventory import (
+    FaultyRows,
+    assess_inventory,
+    inventory_table,
+    joint_lines,
+)
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.outcomes import make_intensity_levels
 from rockfrag.assess.standing.changes import on_plate, with_ballast
@@ -146,3 +151,20 @@ def test_a_wrong_row_is_named(text, words, tmp_path):
     path.write_text(text)
     with pytest.raises(InputError, match=words):
         assess_inventory(path)
+
+
+def test_what_cannot_be_held_so_is_left_out_by_its_name(own_records, tmp_path):
+    """What a slider carries is simulated in one plane, and a depth makes the vase move in space."""
+    path = tmp_path / "shelf.csv"
+    path.write_text(
+        "name,width_cm,height_cm,depth_cm,isolator\n"
+        "bust,20,60,,\nvase,20,60,18,20cm\n"
+    )
+    shared = {"pga": "0.4 g"}
+    shared |= {"records": {"paths": [str(own_records / "catalogue.csv")]}}
+    found = assess_inventory(path, shared, keep_going=True)
+    assert [item.request.name for item in found.found] == ["bust"]
+    (fault,) = found.faults
+    assert fault.startswith("vase: key isolator:")
+    with pytest.raises(FaultyRows, match="vase"):
+        assess_inventory(path, shared)
