@@ -29,7 +29,7 @@ from rockfrag.engines.pure_rocking.kernels.record import CONTACT_EVENT, SAMPLE
 from rockfrag.engines.spatial import _integrate as spatial
 from rockfrag.engines.spatial._body import BOND, MOST_VERTICES
 from rockfrag.engines.spatial.body import NEVER_SLIDES
-from rockfrag.engines.spatial.engine import AFTER, CUT_OFF, RESTS, TOLERANCE
+from rockfrag.engines.spatial.engine import AFTER, CUT_OFF, TOLERANCE
 from rockfrag.engines.steps import FREE_TIME, STACK_STEP, STEP
 from rockfrag.web import ensemble_entry as ensemble
 from rockfrag.web import plane_entry as plane
@@ -117,7 +117,7 @@ def build_space() -> bytes:
         "integrate": (integrate_solid, (call, *tables)),
     }
     constants = {
-        "gravity": GRAVITY, "tolerance": TOLERANCE, "cut": CUT_OFF, "after": AFTER, "rests": RESTS,
+        "gravity": GRAVITY, "tolerance": TOLERANCE, "cut": CUT_OFF, "after": AFTER, "rests": spatial.RESTS,
         "window": spatial.WINDOW,
         "columns": spatial.COLUMNS, "outcome": spatial.OUTCOME, "most": MOST_VERTICES,
         "sticks": NEVER_SLIDES, "fell": spatial.FELL, "certain": spatial.CERTAIN_TIME,

@@ -4,6 +4,18 @@ A state y holds C (0:3), the centre of mass relative to the ground; the quaterni
 velocity of C (7:10, world); the angular velocity (10:13, body); the work done by the ground's motion (13) and
 the energy lost by friction (14).  Everything is for a unit of mass: energies in J/kg, forces in N/kg.
 
+Symbols in all modules of this folder; "in the body" and "in the world" say which axes a vector's parts are along:
+
+- ``rows``: rows of the attitude R, the world's axes in the body, of which ``rows[2]``, or ``up``, is the vertical;
+- ``omega``, ``alpha``, ``turn``: angular velocity [rad/s], acceleration [rad/s²], and velocity after an impact, in
+  the body; ``weight``: effective gravity in the body [N/kg];
+- ``p``, ``q``: arms of contacts from the centre of mass, ``e``: unit vector along an edge, in the body;
+- ``push``: impulse [N s/kg] or force [N/kg] at a contact, in the body if nothing else is said;
+- ``s``: record ``CASE`` with the mode; ``s.field[6]`` is gravity on ground at rest [m/s²].
+
+A contact has a number: that of a vertex from 0, ``count`` for the lowest point of a rim (``rim_contact``), and
+from ``WALLS`` on that of a corner with a wall.
+
 In: a record ``BODY`` and a state. Out: arms [m], velocities [m/s] and heights of points. Theory:
 ``docs/space.md``, "Coordinates", equations 1 to 3.
 """
@@ -20,7 +32,6 @@ from rockfrag.engines.spatial._algebra import (
     minus,
     norm,
     plus,
-    rotation,
     times,
     to_world,
 )
@@ -29,6 +40,8 @@ SIZE = 15
 # where a state has the centre of mass, the attitude (a quaternion), its velocity, the angular velocity in the
 # body, the work of the ground's motion and what friction has taken
 PLACE, ATTITUDE, VELOCITY, SPIN, WORK, FRICTION = 0, 3, 7, 10, 13, 14
+# where it has the height of the centre of mass over the ground, and its velocity upwards
+UP, RISES = PLACE + 2, VELOCITY + 2
 MOST_VERTICES = 64
 MOST_CONSTRAINTS = 8  # walls and ties
 BOND = MOST_CONSTRAINTS  # row of a bond among what holds a body
@@ -91,7 +104,10 @@ def rim_contact(body):
 
 @kernel
 def rim_direction(up):
-    """Direction in the base from its centre to the lowest point of the rim, and the sine of the tilt."""
+    """Direction in the base from its centre to the lowest point of the rim, and the sine of the tilt.
+
+    ``up`` is the vertical as the body sees it. Flat, all points are as low, and one is named.
+    """
     sine = norm(up[0], up[1])
     if sine < 1e-300:
         return (1.0, 0.0, 0.0), 0.0
@@ -147,7 +163,9 @@ def arm_and_bias(body, up, omega, i):
     if i != rim_contact(body):
         p = (body.points[i, 0], body.points[i, 1], body.points[i, 2])
         return p, cross(omega, cross(omega, p))
-    per_sine = 1.0 / max(norm(up[0], up[1]), 1e-300)
+    square = max(up[0] * up[0] + up[1] * up[1], 1e-300)
+    # the root and the division do not wait for each other
+    per_sine = math.sqrt(square) * (1.0 / square)
     x, y = -up[0] * per_sine, -up[1] * per_sine
     p = (body.centre[0] + body.rim * x, body.centre[1] + body.rim * y, -body.height)
     # how fast the lowest point goes round the rim
@@ -158,7 +176,7 @@ def arm_and_bias(body, up, omega, i):
 
 
 @kernel
-def weight_of_attitude(body, y):
+def weight_of_attitude(body, up):
     """Size of an error of the attitude that counts as an error of one of other numbers [-].
 
     Of a rim an error δ turns the contact round it by δ over the tilt, so that the flatter the body the less it may
@@ -166,14 +184,13 @@ def weight_of_attitude(body, y):
     """
     if body.rim == 0.0:
         return 1.0
-    up = rotation(y)[2]
     return min(1.0, 1e3 * norm(up[0], up[1]) + 1e-4)
 
 
 @kernel
 def gap(body, y, up, i):
     """Height of point i over the ground."""
-    return y[2] + dot(up, arm(body, up, i))
+    return y[UP] + dot(up, arm(body, up, i))
 
 
 @kernel
@@ -183,7 +200,7 @@ def gap_of(body, y, rows, i):
         return gap(body, y, rows[2], i)
     w = wall_of(i)
     at = to_world(rows, arm(body, rows[2], i))
-    x, z = y[0] + at[0], y[1] + at[1]
+    x, z = y[PLACE] + at[0], y[PLACE + 1] + at[1]
     return body.distance[w] + body.away[w, 0] * x + body.away[w, 1] * z
 
 
@@ -231,7 +248,10 @@ def is_smooth(body, i):
 
 @kernel
 def wall_candidates(body):
-    """Numbers of the contacts of walls that come before and after all there may be; none without a wall."""
+    """All numbers that contacts of corners with walls may have; none without a wall.
+
+    Corners and walls that a body does not have are among them: :func:`may_meet` says which.
+    """
     return range(WALLS, WALLS + MOST_CORNERS * (body.constraints if body.walls else 0))
 
 
@@ -243,37 +263,75 @@ def may_meet(body, i):
 
 
 @kernel
+def attitude_of(y):
+    """Attitude, a quaternion."""
+    return (y[ATTITUDE], y[ATTITUDE + 1], y[ATTITUDE + 2], y[ATTITUDE + 3])
+
+
+@kernel
+def set_place(y, x, z):
+    """Put the centre of mass at a place in the plan."""
+    y[PLACE], y[PLACE + 1] = x, z
+
+
+@kernel
+def set_attitude(y, attitude):
+    """Give a body an attitude."""
+    for k in range(4):
+        y[ATTITUDE + k] = attitude[k]
+
+
+@kernel
+def centre_velocity(y):
+    """Velocity of the centre of mass in the world."""
+    return (y[VELOCITY], y[VELOCITY + 1], y[VELOCITY + 2])
+
+
+@kernel
+def set_velocity(y, velocity):
+    """Give the centre of mass a velocity in the world."""
+    for k in range(3):
+        y[VELOCITY + k] = velocity[k]
+
+
+@kernel
+def set_spin(y, omega):
+    """Give the body an angular velocity in the body."""
+    for k in range(3):
+        y[SPIN + k] = omega[k]
+
+
+@kernel
 def omega_of(y):
     """Angular velocity in the body."""
-    return (y[10], y[11], y[12])
+    return (y[SPIN], y[SPIN + 1], y[SPIN + 2])
 
 
 @kernel
 def point_velocity(y, rows, p):
     """Velocity in the world of the body's point p."""
     turned = to_world(rows, cross(omega_of(y), p))
-    return (y[7] + turned[0], y[8] + turned[1], y[9] + turned[2])
+    return (y[VELOCITY] + turned[0], y[VELOCITY + 1] + turned[1], y[RISES] + turned[2])
 
 
 @kernel
 def velocity_of(body, y, rows, i):
-    """Velocity in the world of point i."""
+    """Velocity of contact i in the world [m/s]."""
     return point_velocity(y, rows, arm(body, rows[2], i))
 
 
 @kernel
 def kinetic_energy(body, y):
     """Energy of motion [J/kg]."""
-    omega = omega_of(y)
-    return 0.5 * (
-        y[7] ** 2 + y[8] ** 2 + y[9] ** 2 + dot(omega, times(body.inertia, omega))
-    )
+    velocity, omega = centre_velocity(y), omega_of(y)
+    momentum = times(body.inertia, omega)
+    return 0.5 * (dot(velocity, velocity) + dot(omega, momentum))
 
 
 @kernel
 def energy(body, y, g):
     """Kinetic energy and the energy of height over rest [J/kg]."""
-    return kinetic_energy(body, y) + g * (y[2] - body.height)
+    return kinetic_energy(body, y) + g * (y[UP] - body.height)
 
 
 @kernel
@@ -292,12 +350,14 @@ def balance(body, y, g):
 
 
 @kernel
-def pay(body, y, gained, g):
-    """Take energy that was gained [J/kg] from the velocities, as far as there is any."""
-    moving = energy(body, y, g) - g * (y[2] - body.height)
+def pay(body, y, gained):
+    """Take energy that was gained [J/kg] from the velocities, all of which shrink by one factor."""
+    moving = kinetic_energy(body, y)
     if gained > 0.0 and moving > 0.0:
-        for k in range(7, 13):
-            y[k] *= math.sqrt(max(1.0 - gained / moving, 0.0))
+        left = math.sqrt(max(1.0 - gained / moving, 0.0))
+        for k in range(3):
+            y[VELOCITY + k] *= left
+            y[SPIN + k] *= left
 
 
 @kernel
@@ -344,4 +404,4 @@ def meeting(body, k):
 def position_of_base(y, rows, p):
     """Where in the plan the body's point p is."""
     moved = to_world(rows, p)
-    return (y[0] + moved[0], y[1] + moved[1])
+    return (y[PLACE] + moved[0], y[PLACE + 1] + moved[1])

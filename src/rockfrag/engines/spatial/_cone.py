@@ -176,7 +176,11 @@ def fill_slopes(s, size, x, pace):
 
 @kernel
 def newton(s, size, pace, small):
-    """Improve the impulses of the members of a set until the residuals vanish; return whether they do."""
+    """Improve the impulses of the members of a set until the residuals vanish; return whether they do.
+
+    ``pace`` is one over the largest compliance, by which impulses and velocities are compared, and ``small`` the
+    residual [m/s] at which it ends. A step is halved until it takes away a tenth of what it should.
+    """
     x = s.impulse
     worst = residuals(s, size, x, pace, s.right)
     stuck = 0
@@ -416,17 +420,26 @@ def slip_kinetically(s, size, slow):
 
 @kernel
 def off_direction(s, i, e, f):
-    """How far contact i, if it slides towards (e, f), would be driven off that direction; and its impulse.
+    """How far contact i would be driven off the unit vector (e, f) of the plan if it slid that way alone.
 
-    Both the slip across (e, f) and the denominator of the impulse are linear in (e, f), so that their product has
-    at most four zeros around the circle.
+    With u = W P + b (equation 5 of ``docs/space.md``), P = P_n (-µ e, -µ f, 1) and u_n = 0 the normal impulse is
+    P_n = -b_n / D with D = W_nn - µ (W_nx e + W_ny f), and the slip u_t. Both D and D u_t are linear in (e, f), so
+    that the slip across (e, f) times D has at most four zeros around the circle.
+
+    Returns
+    -------
+    across : slip across (e, f), times D
+    denominator : D
+    along : slip along (e, f), times D
     """
-    a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
-    w, m = s.delassus, s.friction[i]
-    gives = w[c, c] - m * (w[c, a] * e + w[c, b] * f)
-    x = s.free[a] * gives - s.free[c] * (w[a, c] - m * (w[a, a] * e + w[a, b] * f))
-    y = s.free[b] * gives - s.free[c] * (w[b, c] - m * (w[b, a] * e + w[b, b] * f))
-    return e * y - f * x, gives, e * x + f * y
+    x, y, z = 3 * i, 3 * i + 1, 3 * i + 2
+    w, b, friction = s.delassus, s.free, s.friction[i]
+    denominator = w[z, z] - friction * (w[z, x] * e + w[z, y] * f)
+    by_unit_x = w[x, z] - friction * (w[x, x] * e + w[x, y] * f)
+    by_unit_y = w[y, z] - friction * (w[y, x] * e + w[y, y] * f)
+    slip_x = b[x] * denominator - b[z] * by_unit_x
+    slip_y = b[y] * denominator - b[z] * by_unit_y
+    return e * slip_y - f * slip_x, denominator, e * slip_x + f * slip_y
 
 
 @kernel
@@ -463,7 +476,11 @@ def slide_alone(s, n, i):
 
 @kernel
 def direction_between(s, i, p, q, u, v, before, after):
-    """Find the direction between two at which a sliding contact stays on it, by false position (Illinois)."""
+    """Find the direction in which contact i slides on, between two, by false position (Illinois).
+
+    ``before`` and ``after``, of opposite signs, are what :func:`off_direction` first returns of the unit vectors
+    (p, q) and (u, v); returned is the unit vector between them where it vanishes.
+    """
     low, high, side = 0.0, 1.0, 0
     e, f = p, q
     for _ in range(60):

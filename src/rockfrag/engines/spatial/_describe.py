@@ -46,7 +46,12 @@ def fill_body(body: Any, g: float) -> bool:
 
 
 def _fill_rim(body: Any) -> None:
-    """Fill points of a round base, and how near and far its rim lies from the centre."""
+    """Fill in what follows of a round base from its radius ρ, its centre, the height h and the tensor of inertia.
+
+    These are points of its rim; how near and far the rim lies from below the centre of mass; the arm of friction
+    of a base that spins flat (``docs/space.md``, equation 6); and the turns of the contact in a pass through flat,
+    π √(1 + ρ²/(A + h²)) rolling and π √(1 + ρ²/A) sliding, A the moment of inertia across ("Near flat" there).
+    """
     radius, x, y = body.rim, body.centre[0], body.centre[1]
     body.count = FEET
     for i in range(FEET):

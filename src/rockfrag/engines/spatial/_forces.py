@@ -10,7 +10,8 @@ import math
 import numpy as np
 
 from rockfrag.base.arrays import fields, whole
-from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.compile.jit import inlined_kernel, kernel
+from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial._algebra import (
     cross,
@@ -71,11 +72,10 @@ CASE = np.dtype(
         # a step: rates at its stages, the state at its end, slip at its beginning
         *fields("slopes", STAGES, solid.SIZE),
         *fields("new", solid.SIZE),
-        # the same of a body that turns about one contact; and the state at its beginning
-        *fields("turning", STAGES, TURNING),
+        # rates of a body that turns about one contact, at the beginning and at the end of a step
+        *fields("turning", 2, TURNING),
         # series of the angle of a body that rocks about an edge, and of its sine and cosine
         *fields("angle sine cosine", HINGE_ORDER + 1),
-        *fields("turned turned_before", TURNING),
         *fields("slip", MOST, 2),
         *whole("armed", MOST),
         *whole("counters", 8),
@@ -148,9 +148,9 @@ def stretch_of(body, y, rows, i):
     p = (body.knot[i, 0], body.knot[i, 1], body.knot[i, 2])
     at, u = to_world(rows, p), solid.point_velocity(y, rows, p)
     x, z, up = (
-        body.anchor[i, 0] - y[0] - at[0],
-        body.anchor[i, 1] - y[1] - at[1],
-        body.anchor[i, 2] - y[2] - at[2],
+        body.anchor[i, 0] - y[solid.PLACE] - at[0],
+        body.anchor[i, 1] - y[solid.PLACE + 1] - at[1],
+        body.anchor[i, 2] - y[solid.UP] - at[2],
     )
     length = math.sqrt(x * x + z * z + up * up)
     way = (x / length, z / length, up / length)
@@ -246,9 +246,11 @@ def slip_of(body, y, rows, k, s):
 
 @kernel
 def fill_delassus(body, rows, which, n, delassus, twist=1.0):
-    """Fill in what impulses at the contacts do to their velocities, along each contact and across it.
+    """Fill in the Delassus matrix W of n contacts: velocities u = W P by impulses P for a unit of mass.
 
-    Along the ground they act, and velocities are, at the part ``twist`` of the contacts' distance from the centre.
+    Row 3 i + k is the velocity of contact i and column 3 j + k the impulse at contact j, k along the contact (0,
+    1) and across it (2). What is along the ground is at the part ``twist`` of a contact's distance from the centre
+    (:func:`twist_of`), and what is across it at the contact itself.
     """
     up = rows[2]
     for j in range(n):
@@ -287,7 +289,10 @@ def fill_velocities(body, y, rows, which, n, out, twist=1.0):
 
 @kernel
 def fill_accelerations(body, y, rows, weight, s, twist):
-    """Fill in the accelerations of closed points without contact forces, with ``weight`` as the body sees it."""
+    """Fill s.free with the accelerations of closed points without contact forces, two along each and one across.
+
+    ``weight`` is the effective gravity in the body, ``twist`` that of :func:`twist_of`, which is 1 beside walls.
+    """
     omega, out, which = solid.omega_of(y), s.free, s.closed
     spin = solid.free_spin(body, omega, twist_by_ties(s))
     for i in range(s.count):
@@ -326,7 +331,7 @@ def load_on(body, y, rows, gravity, s):
     return plus(weight, (s.pulled[0], s.pulled[1], s.pulled[2]))
 
 
-@kernel
+@inlined_kernel
 def pivot_acceleration(body, p, turned, omega, weight, i, s):
     """Angular acceleration about a sticking point, the force at it, both in the body.
 
@@ -424,37 +429,47 @@ def slide_on_one_point(body, y, rows, omega, free_spin, weight, s):
 
 
 @kernel
-def hinge_acceleration(body, rows, omega, weight, i, j, s):
-    """Angular acceleration about the edge from point i to j, force at both ends, and the edge's direction."""
-    p, q = solid.arm(body, rows[2], i), solid.arm(body, rows[2], j)
-    edge = minus(q, p)
-    length = math.sqrt(dot(edge, edge))
-    e = scaled(1.0 / length, edge)
-    b = solid.bias(body, rows[2], omega, p, i)
-    load = plus(b, weight)
-    gyroscopic = cross(omega, times(body.inertia, omega))
-    moment = minus(minus(twist_by_ties(s), gyroscopic), cross(p, load))
-    alpha = scaled(dot(e, moment) / dot(e, times(body.about[i], e)), e)
-    return alpha, scaled(-1.0, plus(cross(alpha, p), load)), e
+def edge_of(body, up, s):
+    """Arm of the first of two closed contacts, the unit vector from it to the second, and their distance [m]."""
+    p, q = solid.arm(body, up, s.closed[0]), solid.arm(body, up, s.closed[1])
+    way = minus(q, p)
+    length = math.sqrt(dot(way, way))
+    return p, scaled(1.0 / length, way), length
 
 
 @kernel
-def split_force(body, rows, omega, alpha, force, e, s):
-    """Share the force of a hinge between its ends so that both hold if they can; world components."""
-    p, q = (
-        solid.arm(body, rows[2], s.closed[0]),
-        solid.arm(body, rows[2], s.closed[1]),
-    )
-    gyroscopic = minus(cross(omega, times(body.inertia, omega)), twist_by_ties(s))
+def edge_forces(body, rows, edge, spin, weight, s):
+    """Fill s.lam with the forces at both ends of an edge that stick, for ``docs/space.md``, "Two that stick".
+
+    ``edge`` is what :func:`edge_of` returns and ``spin`` the angular velocity about it [rad/s]; ``weight`` is in
+    the body. Returned are the angular acceleration about the edge [rad/s²] and the sum of the forces, in the body.
+    """
+    p, e, length = edge
+    twist = twist_by_ties(s)
+    square = spin * spin
+    inertia = dot(e, times(body.about[s.closed[0]], e))
+    alpha = dot(e, minus(twist, cross(p, weight))) / inertia
+    bias = scaled(square, minus(scaled(dot(e, p), e), p))
+    force = scaled(-1.0, plus(plus(scaled(alpha, cross(e, p)), bias), weight))
     # but for its part along the edge, the force at the far end follows from the moment about the near one
-    left = minus(plus(times(body.inertia, alpha), gyroscopic), cross(p, force))
-    far = to_world(rows, scaled(1.0 / dot(minus(q, p), e), cross(left, e)))
-    edge, friction = to_world(rows, e), body.static
+    momentum = times(body.inertia, e)
+    left = plus(scaled(alpha, momentum), scaled(square, cross(e, momentum)))
+    left = minus(minus(left, twist), cross(p, force))
+    far = scaled(1.0 / length, cross(left, e))
+    share_force(body, rows, e, force, far, s)
+    return alpha, force
+
+
+@kernel
+def share_force(body, rows, e, force, far, s):
+    """Share the part of the force of an edge that is along it so that both ends hold if they can; fill s.lam."""
+    far, edge = to_world(rows, far), to_world(rows, e)
     near = minus(to_world(rows, force), far)
     along = dot(near, edge)
     across = minus(near, scaled(along, edge))
-    first = max(friction**2 * across[2] ** 2 - across[0] ** 2 - across[1] ** 2, 0.0)
-    second = max(friction**2 * far[2] ** 2 - far[0] ** 2 - far[1] ** 2, 0.0)
+    friction = body.static * body.static
+    first = max(friction * across[2] ** 2 - across[0] ** 2 - across[1] ** 2, 0.0)
+    second = max(friction * far[2] ** 2 - far[0] ** 2 - far[1] ** 2, 0.0)
     first, second = math.sqrt(first), math.sqrt(second)
     part = 0.5 if first + second == 0.0 else first / (first + second)
     for k in range(3):
@@ -507,17 +522,28 @@ def stick_together(s, n, mask, soft):
 
 @kernel
 def push_by_two(s, sticks, slides, way, grip):
-    """Solve for the impulse at which one contact sticks, beside one that slides a given way.
+    """Solve for the impulses (or forces) of a contact a that sticks beside a contact b that slides a given way.
 
-    Returned is also the normal impulse at the second, and what goes with a unit of it by friction.
+    With u = W P + free (``docs/space.md``, equation 5) and the ``way`` of slip, P_b = N (-grip way, 1). Contact a
+    stops, W_aa P_a + W_ab P_b + u_a = 0, and b does not leave: the normal row of W_ba P_a + W_bb P_b + u_b = 0.
+    P_a is linear in N, which follows from the latter.
+
+    Returns
+    -------
+    P_a : along the contact, twice, and across it, for a unit of mass
+    N : normal impulse at b
+    unit : P_b over N
     """
     w, a, b = s.delassus, 3 * sticks, 3 * slides
+    normal_row = b + 2
     unit = (-grip * way[0], -grip * way[1], 1.0)
     without = stop_at(w, a, (s.free[a], s.free[a + 1], s.free[a + 2]))
     by_unit = stop_at(w, a, effect(w, a, b, unit))
-    left = s.free[b + 2] + dot(row_of(w, b + 2, a), without)
-    gives = dot(row_of(w, b + 2, b), unit) + dot(row_of(w, b + 2, a), by_unit)
-    normal = -left / gives
+    # velocity of b across its contact: without an impulse there, and by a unit of it
+    leaves = s.free[normal_row] + dot(row_of(w, normal_row, a), without)
+    given = dot(row_of(w, normal_row, b), unit)
+    given += dot(row_of(w, normal_row, a), by_unit)
+    normal = -leaves / given
     return plus(without, scaled(normal, by_unit)), normal, unit
 
 
@@ -564,7 +590,12 @@ def spread(s, n, mask):
 
 @kernel
 def solve_general(body, y, rows, n, rubs, s):
-    """Solve for the forces (or impulses, without friction) that undo s.free in a mode; fill ``lam``."""
+    """Fill s.lam with the forces [N/kg] (or impulses) of the n closed contacts that undo s.free in a mode.
+
+    What sticks is stopped in all directions; of what slides the normal velocity alone, with kinetic friction
+    against its slip if it ``rubs`` (``docs/space.md``, "All others"). ``s.free`` holds the accelerations (or
+    velocities) without these, two along each contact and one across it.
+    """
     fill_delassus(body, rows, s.closed, n, s.delassus, twist_of(body, s))
     for i in range(n):
         u = slip_of(body, y, rows, i, s)
@@ -574,17 +605,25 @@ def solve_general(body, y, rows, n, rubs, s):
             s.friction[i] = solid.kinetic_of(body, s.closed[i])
     # a wall may hold what the ground holds already, which leaves nothing to divide by
     on_ground = max(s.closed[0], s.closed[1]) < solid.WALLS
-    if n == 2 and on_ground and s.slides[0] + s.slides[1] == SLIDES:
-        slides = 0 if s.slides[0] == SLIDES else 1
-        way = (s.way[slides, 0], s.way[slides, 1])
-        push, normal, unit = push_by_two(s, 1 - slides, slides, way, s.friction[slides])
-        for k in range(3):
-            s.lam[1 - slides, k], s.lam[slides, k] = push[k], normal * unit[k]
+    one_slides = s.slides[0] != s.slides[1]
+    if n == 2 and on_ground and one_slides:
+        hold_beside_slider(s)
         return
-    stick_together(s, n, (1 << n) - 1, SOFTNESS * largest_compliance(s, n))
+    all_contacts = (1 << n) - 1
+    stick_together(s, n, all_contacts, SOFTNESS * largest_compliance(s, n))
     for i in range(n):
         for k in range(3):
             s.lam[i, k] = s.impulse[3 * i + k]
+
+
+@kernel
+def hold_beside_slider(s):
+    """Fill s.lam of two contacts of which one slides, an edge as in most of these modes, in closed form."""
+    slides = 0 if s.slides[0] == SLIDES else 1
+    way = (s.way[slides, 0], s.way[slides, 1])
+    push, normal, unit = push_by_two(s, 1 - slides, slides, way, s.friction[slides])
+    for k in range(3):
+        s.lam[1 - slides, k], s.lam[slides, k] = push[k], normal * unit[k]
 
 
 @kernel
@@ -597,8 +636,8 @@ def largest_compliance(s, n):
 
 
 @kernel
-def rates(body, tau, y, dy, s, split=True):
-    """Fill in dy/dt, and the contact forces in world components; of a hinge's ends only if its force is ``split``.
+def rates(body, tau, y, dy, s):
+    """Fill in dy/dt, and the contact forces in world components.
 
     ``s.field`` holds the effective gravity at the beginning of the interval, its rate, and the gravity of a ground
     at rest; ``tau`` counts from there.
@@ -619,10 +658,9 @@ def rates(body, tau, y, dy, s, split=True):
         s.lam[0, 0], s.lam[0, 1], s.lam[0, 2] = pushed
         acceleration = plus(load, pushed)
     elif kind == HINGE:
-        i, j = s.closed[0], s.closed[1]
-        alpha, force, e = hinge_acceleration(body, rows, omega, weight, i, j, s)
-        if split:
-            split_force(body, rows, omega, alpha, force, e, s)
+        edge = edge_of(body, rows[2], s)
+        turned, force = edge_forces(body, rows, edge, dot(edge[1], omega), weight, s)
+        alpha = scaled(turned, edge[1])
         acceleration = plus(load, to_world(rows, force))
     elif kind == SLIDER:
         spin = solid.free_spin(body, omega, twist_by_ties(s))
@@ -649,23 +687,28 @@ def rates(body, tau, y, dy, s, split=True):
                 acceleration = plus(acceleration, push)
                 alpha = plus(alpha, turned_by(body, rows, s.closed[i], push, twist))
     fill_rates(y, omega, alpha, acceleration, dy)
-    dy[13] = load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[6]) * y[9]
-    dy[13] += dot(twist_by_ties(s), omega)
-    dy[14] = lost
+    dy[solid.WORK] = (
+        load[0] * y[solid.VELOCITY]
+        + load[1] * y[solid.VELOCITY + 1]
+        + (load[2] + s.field[6]) * y[solid.RISES]
+    )
+    dy[solid.WORK] += dot(twist_by_ties(s), omega)
+    dy[solid.FRICTION] = lost
 
 
 @kernel
 def fill_rates(y, omega, alpha, acceleration, dy):
-    """Fill in the rates of position, attitude and velocities."""
-    w, x, i, z = y[3], y[4], y[5], y[6]
-    dy[0], dy[1], dy[2] = y[7], y[8], y[9]
-    dy[3] = -0.5 * (x * omega[0] + i * omega[1] + z * omega[2])
-    dy[4] = 0.5 * (w * omega[0] + i * omega[2] - z * omega[1])
-    dy[5] = 0.5 * (w * omega[1] + z * omega[0] - x * omega[2])
-    dy[6] = 0.5 * (w * omega[2] + x * omega[1] - i * omega[0])
+    """Fill in the rates of a state: those of place and attitude from its velocities, those of velocities as given.
+
+    ``acceleration`` is that of the centre of mass in the world [m/s²], ``alpha`` the angular one in the body.
+    """
+    attitude = algebra.quaternion_rate(solid.attitude_of(y), omega)
     for k in range(3):
-        dy[7 + k] = acceleration[k]
-        dy[10 + k] = alpha[k]
+        dy[solid.PLACE + k] = y[solid.VELOCITY + k]
+        dy[solid.VELOCITY + k] = acceleration[k]
+        dy[solid.SPIN + k] = alpha[k]
+    for k in range(4):
+        dy[solid.ATTITUDE + k] = attitude[k]
 
 
 @kernel
@@ -686,5 +729,5 @@ def push_at(body, y, rows, i, impulse, twist=1.0):
     impulse = solid.from_frame(body, i, impulse)
     turned = turned_by(body, rows, i, impulse, twist)
     for k in range(3):
-        y[7 + k] += impulse[k]
-        y[10 + k] += turned[k]
+        y[solid.VELOCITY + k] += impulse[k]
+        y[solid.SPIN + k] += turned[k]

@@ -13,6 +13,7 @@ from rockfrag.engines.pure_rocking.kernels.roots import narrowed
 from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _hinge as hinge
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _step as step
 from rockfrag.engines.spatial import _stepping as stepping
@@ -24,6 +25,9 @@ FLAT_PASS = 1e-8
 SHORTEST = 1e-11  # step [s]
 # time in which rates stay: its square times an acceleration is less than TOUCH [s]
 BRIEF = 1e-6
+# margins at which an instant is known: of gaps [m]; of forces [N/kg] and slips [m/s], which is less than what is
+# not seen of forces (LEAST_FORCE), and 1e-5 of the slip that counts as ended (AT_REST)
+CLOSED, UNSEEN = 1e-12, 1e-9
 # contact events in one interval after which the velocity that closes contacts is doubled
 MANY = 40
 # steps in one interval after which errors of COARSE [m, m/s, rad/s] are allowed to what slides: slip that hardly
@@ -60,6 +64,8 @@ OUTCOME = 18 + 4 * solid.HOLDERS
 
 COLUMNS = 17
 """Columns of a history: y[0:13], turn about the vertical, number of closed points, and the first two of them."""
+
+RESTS = 99  # number of closed points that a history has of a body at rest
 
 
 @kernel
@@ -173,10 +179,11 @@ def start_rolling(body, y, x, z, gravity, s):
     """Tilt a round body by RIM_START towards a direction of the base, by the work of the ground's pull."""
     size = max(algebra.norm(x, z), 1e-300)
     u = (x / size, z / size)
-    a, b, c = y[0], y[1], y[2]
+    before = (y[solid.PLACE], y[solid.PLACE + 1], y[solid.UP])
     tilt_about(body, y, u, RIM_START)
-    lifted = (gravity[2] + s.field[6]) * (y[2] - c)
-    y[solid.WORK] += gravity[0] * (y[0] - a) + gravity[1] * (y[1] - b) + lifted
+    after = (y[solid.PLACE], y[solid.PLACE + 1], y[solid.UP])
+    moving = (gravity[0], gravity[1], gravity[2] + s.field[6])
+    y[solid.WORK] += algebra.dot(moving, algebra.minus(after, before))
     s.closed[0], s.slides[0] = solid.rim_contact(body), forces.STICKS
     s.count, s.rests = 1, 0
     modes.settle(body, y, s)
@@ -184,7 +191,11 @@ def start_rolling(body, y, x, z, gravity, s):
 
 @kernel
 def tilt_about(body, y, u, tilt):
-    """Give a flat body a small tilt, with its lowest point towards u in the base, where that point was."""
+    """Give a flat body a small tilt [rad] about its lowest point, which is towards the unit vector u of the base.
+
+    That point stays where it is in the plan; the height of the centre of mass is left to what follows. The axis
+    (-u[1], u[0]) of the turn is level and across u.
+    """
     modes.lay_flat(body, y)
     p = (
         body.centre[0] + body.rim * u[0],
@@ -194,41 +205,49 @@ def tilt_about(body, y, u, tilt):
     before = solid.position_of_base(y, algebra.rotation(y), p)
     algebra.turn(y, (-tilt * u[1], tilt * u[0], 0.0))
     after = solid.position_of_base(y, algebra.rotation(y), p)
-    y[0] += before[0] - after[0]
-    y[1] += before[1] - after[1]
+    y[solid.PLACE] += before[0] - after[0]
+    y[solid.PLACE + 1] += before[1] - after[1]
 
 
 @kernel
 def pass_flat(body, y, s):
-    """Let a rim pass through flat: its contact turns by a fixed angle and the body tilts up again."""
+    """Let a rim pass through flat in closed form, changing y (``docs/space.md``, "Near flat").
+
+    Its contact turns by π √(1 + ρ²/(A + h²)) (of a rim that slides π √(1 + ρ²/A)), which the body's record has,
+    and the tilt rises as it sank. A body whose tilt rises already is left as it is.
+    """
+    gravity = s.field[6]
     up = algebra.rotation(y)[2]
-    from_here, sine = solid.rim_direction(up)
+    from_here, tilt = solid.rim_direction(up)
     # rate of the vertical as the body sees it, towards the upright while the body sinks
     sinking = algebra.cross(up, solid.omega_of(y))
     if sinking[0] * up[0] + sinking[1] * up[1] >= 0.0:
         return
-    before = solid.energy(body, y, s.field[6])
-    angle = body.slide_turn if s.slides[0] == forces.SLIDES else body.pass_turn
-    # the way in which the contact goes round already
-    if sinking[0] * from_here[1] - sinking[1] * from_here[0] < 0:
+    before = solid.energy(body, y, gravity)
+    slides = s.slides[0] == forces.SLIDES
+    angle = body.slide_turn if slides else body.pass_turn
+    goes_back = sinking[0] * from_here[1] - sinking[1] * from_here[0] < 0
+    if goes_back:
+        # on the way in which the contact goes round already
         angle = -angle
-    d, c = sin_cos(angle)
+    sine, cosine = sin_cos(angle)
     to_there = (
-        c * from_here[0] - d * from_here[1],
-        d * from_here[0] + c * from_here[1],
+        cosine * from_here[0] - sine * from_here[1],
+        sine * from_here[0] + cosine * from_here[1],
     )
-    tilt_about(body, y, to_there, max(2 * FLAT_PASS, sine))
+    # so far that it is not below FLAT_PASS again at once
+    tilt_about(body, y, to_there, max(2 * FLAT_PASS, tilt))
     rise(body, y, to_there, algebra.norm(sinking[0], sinking[1]), s)
     # a base that is not symmetrical would gain in the new direction
-    solid.pay(body, y, solid.energy(body, y, s.field[6]) - before, s.field[6])
+    solid.pay(body, y, solid.energy(body, y, gravity) - before)
 
 
 @kernel
 def rise(body, y, u, rate, s):
     """Let a body that is next to flat tilt up about the rim's point towards u at a rate."""
-    y[10], y[11] = -rate * u[1], rate * u[0]
+    y[solid.SPIN], y[solid.SPIN + 1] = -rate * u[1], rate * u[0]
     if s.slides[0] == forces.SLIDES:
-        y[9] -= rising(body, y, solid.rim_contact(body))
+        y[solid.RISES] -= rising(body, y, solid.rim_contact(body))
     else:
         modes.settle(body, y, s)
 
@@ -259,7 +278,11 @@ def rising(body, y, i):
 
 @kernel
 def guess_landing(body, h, y, below, s):
-    """When in a step the point that is lowest after it lands, by the cubic through gaps and velocities."""
+    """Time in a step [s] at which the point lands that is lowest after it, ``below`` the ground by a negative gap.
+
+    By the zero of the cubic through gaps and velocities at both ends, above + fall t + square t² + cube t³ with t
+    the part of the step; about an edge then by that of the series of the angle.
+    """
     i = lowest_open(body, s.new, s)
     above, fall = solid.gap_of(body, y, algebra.rotation(y), i), h * rising(body, y, i)
     end = h * rising(body, s.new, i)
@@ -270,6 +293,8 @@ def guess_landing(body, h, y, below, s):
     for _ in range(5):
         value = above + part * (fall + part * (square + part * cube))
         part -= value / (fall + part * (2.0 * square + part * 3.0 * cube))
+    if step.kind_of_step(body, s) == forces.HINGE:
+        part = hinge.landing(body, y, i, part, 0.5 * modes.TOUCH, s)
     return h * part
 
 
@@ -279,24 +304,30 @@ def locate(body, tau, h, y, s):
     below, what = step.margin(body, s.new, s)
     middle = guess_landing(body, h, y, below, s) if what == modes.LANDS else 0.0
     forces.rates(body, tau, y, s.slopes[0], s)
-    above, at_once = step.margin(body, y, s)
+    above, what_above = step.margin(body, y, s)
     if above <= 0:
         for i in range(solid.SIZE):
             s.new[i] = y[i]
-        return 0.0, at_once
-    bracket, below_what = (0.0, above, h, below, 0), what
+        return 0.0, what_above
+    bracket, what_below = (0.0, above, h, below, 0), what
     for _ in range(80):
         low, above, high, below, _ = bracket
-        if not low < middle < high:
+        # margins of two kinds have no chord in common
+        alike = what_above == what_below
+        if alike and not low < middle < high:
             middle = (low * below - high * above) / (below - above)
         if not low < middle < high:
             middle = 0.5 * (low + high)
+            bracket = (low, above, high, below, 0)
         step.attempt(body, tau, middle, y, s)
         value, what = step.margin(body, s.new, s)
         at, middle = middle, 0.0
-        below_what = what if value < 0.0 else below_what
+        if value < 0.0:
+            what_below = what
+        else:
+            what_above = what
         rate = 0.0
-        if what == modes.LANDS and below_what == modes.LANDS:
+        if what == modes.LANDS and what_below == modes.LANDS:
             rate = rising(body, s.new, lowest_open(body, s.new, s))
         if rate < 0.0:
             # a last step of Newton's, so short that the rates at its beginning suffice
@@ -306,7 +337,8 @@ def locate(body, tau, h, y, s):
                 step.go_on_by(body, at, rest, tau, y, s)
                 return at + rest, what
         bracket = narrowed(bracket, at, value)
-        if abs(value) < 1e-12:
+        is_gap = what in (modes.LANDS, modes.TIE_TURNS, modes.TIE_BREAKS)
+        if abs(value) < (CLOSED if is_gap else UNSEEN):
             return at, what
         if bracket[2] - bracket[0] < 1e-14:
             break
@@ -317,7 +349,10 @@ def locate(body, tau, h, y, s):
 
 @kernel
 def stop_slips(body, y, s):
-    """Let points whose slip has ended stick, before the mode is chosen anew."""
+    """Let points whose slip has ended stick, before the mode is chosen anew, and stop what is left of it.
+
+    Slip ends at AT_REST; of several points the others stick too where theirs is below twice that.
+    """
     rows = algebra.rotation(y)
     for i in range(s.count):
         if s.slides[i] == forces.SLIDES:
@@ -330,30 +365,33 @@ def stop_slips(body, y, s):
 
 @kernel
 def rim_instead_of_feet(body, y, gravity, s):
-    """Replace the feet of a round base by its lowest point as soon as fewer than three of them carry."""
+    """Replace the feet of a round base by its lowest point as soon as fewer than three of them carry.
+
+    Feet are the points of the rim on which a flat body slides; it tips towards those that are left.
+    """
     n = s.count
     if body.rim == 0.0 or n == 0 or n > 2 or s.closed[0] == solid.rim_contact(body):
         return
-    x, z, sliding = 0.0, 0.0, forces.STICKS
+    towards_x, towards_y, sliding = 0.0, 0.0, forces.STICKS
     for i in range(n):
-        x += body.points[s.closed[i], 0] - body.centre[0]
-        z += body.points[s.closed[i], 1] - body.centre[1]
+        towards_x += body.points[s.closed[i], 0] - body.centre[0]
+        towards_y += body.points[s.closed[i], 1] - body.centre[1]
         sliding = max(sliding, s.slides[i])
-    tip_over_rim(body, y, x, z, sliding, gravity, s)
+    tip_over_rim(body, y, towards_x, towards_y, sliding, gravity, s)
 
 
 @kernel
 def tip_over_rim(body, y, x, z, sliding, gravity, s):
     """Tilt a flat body towards a direction of the base, with the velocities that it has if it slides."""
     omega = solid.omega_of(y)
-    velocity = (y[7], y[8], y[9])
+    velocity = solid.centre_velocity(y)
     before = solid.balance(body, y, s.field[6])
     start_rolling(body, y, x, z, gravity, s)
     if sliding == forces.SLIDES:
         s.slides[0] = forces.SLIDES
-        y[10], y[11], y[12] = omega
-        y[7], y[8], y[9] = velocity
-    solid.pay(body, y, solid.balance(body, y, s.field[6]) - before, s.field[6])
+        solid.set_spin(y, omega)
+        solid.set_velocity(y, velocity)
+    solid.pay(body, y, solid.balance(body, y, s.field[6]) - before)
 
 
 @kernel
@@ -397,27 +435,16 @@ def note_soon(s, peaks, k, scale, dt):
 
 @kernel
 def happen(body, what, tau, y, cut, stuck, s):
-    """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J/kg].
+    """Change velocities and mode by what ended a step; return the energy lost [J/kg].
 
-    ``tau`` is the time in the interval [s], ``cut`` the energy at which a body rests over what a fall takes, and
-    ``stuck`` how many steps in a row had hardly any length.
+    ``what`` is one of LANDS to TIE_BREAKS of ``_modes``, ``tau`` the time in the interval [s], ``cut`` the energy
+    at which a body rests over what a fall takes, and ``stuck`` how many steps in a row had hardly any length.
+    First comes what the event does by itself, then the mode that follows.
     """
-    g = s.field[6]
     gravity = forces.effective_gravity_at(s.field, tau)
-    before = solid.balance(body, y, g)
+    before = solid.balance(body, y, s.field[6])
     if what == modes.LANDS:
-        modes.impact(body, y, gravity, 0, s)
-        rows = algebra.rotation(y)
-        if body.rim == 0.0 and modes.count_touching(body, y, rows) >= 3:
-            # the points that open begin with no gap, not with one of rounding
-            modes.lay_flat(body, y)
-        left = solid.energy(body, y, g)
-        carried = (
-            stands_within_balance(body, rows)
-            and modes.rest_margin(body, y, rows, gravity, s) >= 0
-        )
-        if carried and (left < cut * body.barrier or rattle_ends(body, left, s)):
-            modes.come_to_rest(body, y, s)
+        land(body, y, gravity, cut, s)
     elif what == modes.SLIP_ENDS:
         stop_slips(body, y, s)
     elif what == modes.TIE_TURNS:
@@ -425,27 +452,52 @@ def happen(body, what, tau, y, cut, stuck, s):
     elif what == modes.TIE_BREAKS:
         turn_ties(body, y, tau, True, s)
     if what == modes.OPENS and body.rim > 0 and s.count >= 3:
+        # the face on which a round body slides tips over its rim
         x, z = modes.pressure_centre(body, s)
         tip_over_rim(body, y, x, z, forces.SLIDES, gravity, s)
     elif stuck > 3 and what in (modes.OPENS, modes.LEAVES_CONE):
         modes.insist(body, what, s)
-    elif forces.kind_of(s) != forces.REST and not modes.choose_mode(body, tau, y, s):
-        s.counters[modes.JAMS] += 1
-        free = slides_any(s)
-        if free:
-            # an impact without a collision, which at least one contact takes part in
-            modes.impact(body, y, gravity, 1, s)
-            free = modes.choose_mode(body, tau, y, s)
-        if not free:
-            modes.jam(body, y, s)
+    elif forces.kind_of(s) != forces.REST:
+        follow(body, tau, y, gravity, s)
     rim_instead_of_feet(body, y, gravity, s)
-    return before - solid.balance(body, y, g)
+    return before - solid.balance(body, y, s.field[6])
 
 
 @kernel
-def note_peaks(body, y, start, out):
-    """Keep the largest tilt, speed and walk; return the cosine of the tilt."""
+def land(body, y, gravity, cut, s):
+    """Solve the impact of a point that lands, and let the body rest if it has too little energy left to go on."""
+    modes.impact(body, y, gravity, 0, s)
     rows = algebra.rotation(y)
+    if body.rim == 0.0 and modes.count_touching(body, y, rows) >= 3:
+        # the points that open begin with no gap, not with one of rounding
+        modes.lay_flat(body, y)
+    left = solid.energy(body, y, s.field[6])
+    carried = (
+        stands_within_balance(body, rows)
+        and modes.rest_margin(body, y, rows, gravity, s) >= 0
+    )
+    if carried and (left < cut * body.barrier or rattle_ends(body, left, s)):
+        modes.come_to_rest(body, y, s)
+
+
+@kernel
+def follow(body, tau, y, gravity, s):
+    """Find the mode that follows; where none has forces (Painlevé), after an impact of at least one contact."""
+    if modes.choose_mode(body, tau, y, s):
+        return
+    s.counters[modes.JAMS] += 1
+    free = slides_any(s)
+    if free:
+        # without a collision: something that slides is stopped
+        modes.impact(body, y, gravity, 1, s)
+        free = modes.choose_mode(body, tau, y, s)
+    if not free:
+        modes.jam(body, y, s)
+
+
+@kernel
+def note_peaks(body, y, rows, out):
+    """Keep the largest tilt and speed."""
     up = rows[2]
     sine = algebra.norm(up[0], up[1])
     if sine > 1e-9:
@@ -458,11 +510,16 @@ def note_peaks(body, y, start, out):
             out[PEAK_TILT] = max(out[PEAK_TILT], tilt)
         elif sine > out[PEAK_TILT] * up[2]:
             out[PEAK_TILT] = max(out[PEAK_TILT], atan2(sine, up[2]))
-    speed = math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
+    speed = algebra.length(solid.omega_of(y))
     out[PEAK_SPEED] = max(out[PEAK_SPEED], speed)
-    foot = solid.position_of_base(y, rows, (0.0, 0.0, -body.height))
+
+
+@kernel
+def note_walk(body, y, start, out):
+    """Keep how far the base's point below the centre of mass is from where it was at first."""
+    below = (0.0, 0.0, -body.height)
+    foot = solid.position_of_base(y, algebra.rotation(y), below)
     out[WALK_X], out[WALK_Y] = foot[0] - start[0], foot[1] - start[1]
-    return up[2]
 
 
 @kernel
@@ -496,28 +553,43 @@ def reach_towards_tilt(body, rows):
 
 @kernel
 def heading(y):
-    """Angle by which a body is turned about the vertical [rad]: the twist of its quaternion about that axis."""
-    real, upright = y[solid.ATTITUDE], y[solid.ATTITUDE + 3]
-    return 2.0 * atan2(upright, real)
+    """Twist of a body's quaternion about the vertical: cosine and sine of half the angle, but for their size."""
+    return y[solid.ATTITUDE], y[solid.ATTITUDE + 3]
+
+
+@kernel
+def turn_since(before, y):
+    """Angle by which a body has turned about the vertical since a heading, less than half a turn [rad]."""
+    now = heading(y)
+    cosine = before[0] * now[0] + before[1] * now[1]
+    sine = before[0] * now[1] - before[1] * now[0]
+    if cosine < 0.0:
+        # the other quaternion of the same attitude
+        cosine, sine = -cosine, -sine
+    return 2.0 * atan2(sine, cosine)
 
 
 @kernel
 def note_turn(y, before, out):
-    """Add what the heading has changed by; return it."""
+    """Add the turn about the vertical since a heading if it is large; return the heading from which more counts.
+
+    An arc tangent is dear, and few bodies turn far.
+    """
     now = heading(y)
-    change = now - before
-    change -= 2 * math.pi * math.floor(change / (2 * math.pi) + 0.5)
-    out[TURN] += change
-    return now
+    cosine = before[0] * now[0] + before[1] * now[1]
+    sine = before[0] * now[1] - before[1] * now[0]
+    if 2.0 * abs(sine) > abs(cosine):
+        out[TURN] += turn_since(before, y)
+        return now
+    return before
 
 
 @kernel
-def fall_is_certain(body, y, peaks, scale, g):
+def fall_is_certain(body, y, rows, peaks, scale, g):
     """Whether the body leans further over its furthest point than the steepest effective gravity to come."""
     if body.constraints > 0:
         # what holds it may catch it
         return False
-    rows = algebra.rotation(y)
     up = rows[2]
     sine = algebra.norm(up[0], up[1])
     # sine and cosine of the tilt beyond, times the same length
@@ -533,50 +605,54 @@ def fall_is_certain(body, y, peaks, scale, g):
 
 @kernel
 def note_fall(y, s, time, out):
-    """Write down how the body fell, and when it lies or, before that, when its fall is certain."""
+    """Write down how the body fell, and when it lies or, before that, when its fall is certain.
+
+    FALL_FIRST and FALL_SECOND take the first two contacts with the ground that are closed, -1 where there is none.
+    """
     rows = algebra.rotation(y)
     out[FELL], out[CERTAIN_TIME] = 1.0, time
     out[FALL_AZIMUTH] = atan2(rows[1][2], rows[0][2])
-    out[FALL_FIRST] = s.closed[0] if s.count > 0 else -1
-    out[FALL_SECOND] = s.closed[1] if s.count > 1 else -1
+    out[FALL_FIRST] = out[FALL_SECOND] = -1.0
+    for k in range(s.count - 1, -1, -1):
+        if s.closed[k] < solid.WALLS:
+            out[FALL_SECOND] = out[FALL_FIRST]
+            out[FALL_FIRST] = s.closed[k]
 
 
 @kernel
-def record(history, k, y, out, s):
-    """Write a sample of the history, if there is one."""
+def record(history, k, y, before, out, s):
+    """Write a sample of the history, if there is one; ``before`` is the heading from which the turn counts on."""
     if k >= history.shape[0]:
         return
     for i in range(13):
         history[k, i] = y[i]
-    history[k, 13] = out[TURN]
-    history[k, 14] = 99 if s.rests else s.count
+    history[k, 13] = out[TURN] + turn_since(before, y)
+    history[k, 14] = RESTS if s.rests else s.count
     history[k, 15] = s.closed[0]
     history[k, 16] = s.closed[1]
 
 
 @kernel
 def small_rim(body, y, tau, cut, s):
-    """Let a round body lie flat whose wobble is below the cut-off while the ground would carry it flat."""
-    gravity = forces.effective_gravity_at(s.field, tau)
+    """Lay a round body flat whose wobble is below the cut-off if the ground carries it; return the loss [J/kg]."""
     rows = algebra.rotation(y)
-    if s.count != 1:
-        return
     small = LEAST_WOBBLE * cut * body.barrier
     # of the motion that tilts the body, what it would lose by lying down [J/kg]
-    tilting = 0.5 * (body.inertia[0, 0] * y[10] ** 2 + body.inertia[1, 1] * y[11] ** 2)
+    a, b, _ = solid.omega_of(y)
+    tilting = 0.5 * (body.inertia[0, 0] * a**2 + body.inertia[1, 1] * b**2)
     lift = s.field[6] * body.rim * algebra.norm(rows[2][0], rows[2][1])
-    if tilting + 0.5 * y[9] ** 2 + lift >= small:
-        return
-    if (
-        modes.rest_margin(body, y, rows, gravity, s) >= 0
-        and solid.energy(body, y, s.field[6]) < small
-    ):
+    if tilting + 0.5 * y[solid.RISES] ** 2 + lift >= small:
+        return 0.0
+    before = solid.energy(body, y, s.field[6])
+    gravity = forces.effective_gravity_at(s.field, tau)
+    if modes.rest_margin(body, y, rows, gravity, s) >= 0 and before < small:
         modes.come_to_rest(body, y, s)
     elif s.slides[0] == forces.SLIDES and body.kinetic * body.height < body.rim:
-        y[9] = y[10] = y[11] = 0.0
+        y[solid.RISES] = y[solid.SPIN] = y[solid.SPIN + 1] = 0.0
         modes.lay_flat(body, y)
         if not modes.choose_mode(body, tau, y, s):
             modes.jam(body, y, s)
+    return before - solid.energy(body, y, s.field[6])
 
 
 @kernel
@@ -591,7 +667,9 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     """Take one step of an interval, up to its end or to what happens first; return the time and the next step."""
     g = s.field[6]
     step.begin(body, tau, y, s)
-    h = min(next_step, dt - tau)
+    # equal steps to the end of the interval, where the ground's acceleration has a kink
+    h = (dt - tau) / math.ceil((dt - tau) / next_step)
+    most = 5.0
     while True:
         error = step.attempt(body, tau, h, y, s)
         out[STEPS] += 1
@@ -604,9 +682,12 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
                 continue
             break
         h *= max(0.2, 0.9 * slow_power(tolerance / error))
-    grow = (
-        5.0 if error == 0.0 else min(5.0, max(0.3, 0.9 * slow_power(tolerance / error)))
-    )
+        # else the next step would be rejected too
+        most = 1.0
+    grow = most
+    if error > 1e-4 * tolerance:
+        # of less the growth is five times in any case
+        grow = min(most, max(0.3, 0.9 * slow_power(tolerance / error)))
     ahead = h * grow
     if least < 0:
         h, what = locate(body, tau, h, y, s)
@@ -617,7 +698,6 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         note_loss(solid.balance(body, y, g) - solid.balance(body, s.new, g), out)
     for i in range(solid.SIZE):
         y[i] = s.new[i]
-    algebra.normalise(y)
     if body.constraints > 0:
         note_forces(body, y, s)
     if what != modes.NOTHING:
@@ -629,7 +709,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         modes.settle(body, y, s)
         if body.walls:
             # contacts that are wedged may be raised
-            solid.pay(body, y, solid.energy(body, y, g) - before, g)
+            solid.pay(body, y, solid.energy(body, y, g) - before)
         note_loss(before - solid.energy(body, y, g), out)
     # whether the rates at the end of a step are those at the beginning of the next
     sticks = forces.kind_of(s) in (forces.FLIGHT, forces.PIVOT, forces.HINGE)
@@ -649,21 +729,22 @@ def note_loss(loss, out):
 @kernel
 def look_after_rim(body, y, tau, cut, ahead, s, out):
     """Pass a rolling rim through flat, or let it rest."""
+    if s.count != 1:
+        return ahead
     up = algebra.rotation(y)[2]
+    if algebra.norm(up[0], up[1]) >= FLAT_PASS:
+        note_loss(small_rim(body, y, tau, cut, s), out)
+        return ahead
     before = solid.energy(body, y, s.field[6])
-    passes = s.count == 1 and algebra.norm(up[0], up[1]) < FLAT_PASS
-    if passes:
-        s.goes_on = 0
-        pass_flat(body, y, s)
-    else:
-        small_rim(body, y, tau, cut, s)
+    s.goes_on = 0
+    pass_flat(body, y, s)
     note_loss(before - solid.energy(body, y, s.field[6]), out)
-    return 1e-9 if passes else ahead
+    return 1e-9
 
 
 @entry_kernel
 def integrate_scales(
-    body,
+    bodies,
     acceleration,
     peaks,
     scales,
@@ -676,19 +757,21 @@ def integrate_scales(
     history,
     outs,
     counts,
-    s,
+    cases,
 ):
     """Integrate one analysis after the other, at each of several scales, as :func:`integrate` does.
 
     Parameters
     ----------
-    body, acceleration, dt, g, extra, tolerance, cut, history, s : as there
+    bodies, cases : records of ``body`` and ``s`` there, in arrays of one, which are quicker to pass, shape (1,)
+    acceleration, dt, g, extra, tolerance, cut, history : as there
     peaks : takes what is asked for there, shape (n, 4)
     scales : of the motion, shape (scales,) [-]
     ends : states to begin with, and then those at the end, shape (scales, SIZE)
     outs : takes the outcomes, shape (scales, OUTCOME)
     counts : takes the counters, shape (scales, COUNTERS)
     """
+    body, s = bodies[0], cases[0]
     fill_peaks(acceleration, peaks)
     for k in range(scales.shape[0]):
         integrate(
@@ -792,18 +875,19 @@ def integrate(
         skips = s.rests == 1 and s.bonded == 0 and k + WINDOW <= last
         if skips and rests_on(body, peaks, k, scale, g):
             for _ in range(WINDOW):
-                record(history, k, y, out, s)
+                record(history, k, y, before, out, s)
                 k += 1
             continue
         set_field(s.field, acceleration, k, scale, dt, g)
         s.began = k * dt
         note_soon(s, peaks, k, scale, dt)
-        record(history, k, y, out, s)
-        free = body.constraints == 0 and solid.energy(body, y, g) < body.barrier
-        still = still + 1 if k > last and hardly_moves(body, y, cut) else 0
-        if k > last and (s.rests == 1 or free or still > STILL):
-            # on a ground at rest it stands, has too little energy left to fall, or leans and does not move
-            break
+        record(history, k, y, before, out, s)
+        if k > last:
+            free = body.constraints == 0 and solid.energy(body, y, g) < body.barrier
+            still = still + 1 if hardly_moves(body, y, cut) else 0
+            if s.rests == 1 or free or still > STILL:
+                # on a ground at rest it stands, has too little energy left to fall, or leans and does not move
+                break
         if s.bonded:
             note_bond(body, y, 0.0, s)
         tau = 0.0
@@ -861,18 +945,24 @@ def integrate(
                 s.counters[modes.UNSOLVED] += 1
                 note_fall(y, s, (k + 1) * dt, out)
                 break
-            up = note_peaks(body, y, start, out)
-            before = note_turn(y, before, out)
-            if up <= 0.0 or fall_is_certain(body, y, peaks[min(k, last)], scale, g):
+            rows = algebra.rotation(y)
+            note_peaks(body, y, rows, out)
+            soon = peaks[min(k, last)]
+            if rows[2][2] <= 0.0 or fall_is_certain(body, y, rows, soon, scale, g):
                 note_fall(y, s, (k + 1) * dt, out)
                 break
+        if solid.is_known(y):
+            note_walk(body, y, start, out)
+            before = note_turn(y, before, out)
         if out[FELL] > 0 or lost_track > PATIENCE or out[STEPS] > MOST_STEPS:
             break
         if many < AGAIN:
             patience = RESTLESS
         k += 1
     if out[FELL] == 0.0:
-        record(history, k, y, out, s)
+        record(history, k, y, before, out, s)
+    if solid.is_known(y):
+        out[TURN] += turn_since(before, y)
     out[BEYOND] = s.beyond
     out[LEANS] = out[FELL] == 0.0 and body.constraints > 0 and is_beyond(body, y)
     for i in range(solid.HOLDERS):
@@ -964,7 +1054,7 @@ def give_up(body, tau, y, s):
     s.counters[modes.UNSOLVED] += 1
     up = algebra.rotation(y)[2]
     if body.rim > 0 and algebra.norm(up[0], up[1]) < 1e-3:
-        y[9] = y[10] = y[11] = 0.0
+        y[solid.RISES] = y[solid.SPIN] = y[solid.SPIN + 1] = 0.0
         modes.lay_flat(body, y)
     if not modes.choose_mode(body, tau, y, s):
         modes.jam(body, y, s)

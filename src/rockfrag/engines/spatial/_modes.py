@@ -138,20 +138,15 @@ def along_wall(body, y, rows, which, i, j, s):
 
 @kernel
 def kind_of_mode(s):
-    """Kind of a mode of which only what sticks matters: a point, an edge, or any other."""
-    if forces.at_wall(s):
-        return forces.GENERAL
-    if s.rests == 0 and s.count == 1 and s.slides[0] == forces.STICKS:
-        return forces.PIVOT
-    if s.rests == 0 and s.count == 2 and s.slides[0] + s.slides[1] == 0:
-        return forces.HINGE
-    return forces.GENERAL
+    """PIVOT or HINGE of a mode in which nothing is closed but one point or two that stick, or else GENERAL."""
+    kind = forces.kind_of(s)
+    return kind if kind in (forces.PIVOT, forces.HINGE) else forces.GENERAL
 
 
 @kernel
 def hold_still(body, y, rows, kind, s):
     """Take away what velocity is left at a point or an edge that sticks."""
-    velocity = algebra.to_body(rows, (y[7], y[8], y[9]))
+    velocity = algebra.to_body(rows, solid.centre_velocity(y))
     momentum = algebra.times(body.inertia, solid.omega_of(y))
     i = s.closed[0]
     if kind == forces.PIVOT:
@@ -161,9 +156,8 @@ def hold_still(body, y, rows, kind, s):
             body, rows[2], i, s.closed[1], velocity, velocity, momentum, 0.0
         )
     pushed = algebra.to_world(rows, push)
-    for k in range(3):
-        y[7 + k] += pushed[k]
-        y[10 + k] = turn[k]
+    solid.set_velocity(y, algebra.plus(solid.centre_velocity(y), pushed))
+    solid.set_spin(y, turn)
 
 
 @kernel
@@ -188,7 +182,7 @@ def hold(body, y, rows, s):
 def impact(body, y, gravity, least, s):
     """Solve an impact of all points that touch, and hold those that hardly leave."""
     rows = algebra.rotation(y)
-    before = (y[7], y[8], y[9])
+    before = solid.centre_velocity(y)
     n = touching(body, y, rows, s)
     momentum = stick.fill_velocities(body, y, rows, n, s)
     if picks_wall(n, s):
@@ -220,14 +214,14 @@ def impact_at_wall(body, y, rows, gravity, n, least, s):
 
     Newton's ratio and friction together may gain energy; then all ratios are halved until they do not.
     """
-    came = (y[7], y[8], y[9], y[10], y[11], y[12])
+    came = (solid.centre_velocity(y), solid.omega_of(y))
     before = solid.energy(body, y, s.field[6])
     found, solutions = -1, 0
     for _ in range(TAKEN_IN):
         found, solutions = bounce_without_gain(body, y, rows, n, least, came, before, s)
         if found < 0:
             break
-        load = algebra.to_body(rows, (y[7], y[8], y[9]))
+        load = algebra.to_body(rows, solid.centre_velocity(y))
         i = missed(body, y, rows, n, (load, solid.omega_of(y)), MISSED, False, s)
         at = least_needed(n, found, s)
         if i < 0 or at < 0:
@@ -254,8 +248,8 @@ def bounce_without_gain(body, y, rows, n, least, came, before, s):
     """Solve an impact at walls from the velocities that came, with the largest part of the ratios without gain."""
     part, found, solutions = 1.0, -1, 0
     for _ in range(40):
-        for k in range(6):
-            y[7 + k] = came[k]
+        solid.set_velocity(y, came[0])
+        solid.set_spin(y, came[1])
         found, solutions = bounce(body, y, rows, n, least, part, s)
         if found < 0:
             break
@@ -398,7 +392,10 @@ def note_slips(body, n, s):
 
 @kernel
 def let_slip(i, s):
-    """Let contact i of a small system slip: without friction its direction is of no effect."""
+    """Let contact i of a small system slip: without friction its direction is of no effect.
+
+    Its way of slip is given, and it counts as one that did not slip before, as there is no grip for it to regain.
+    """
     s.given[i], s.slid[i] = 1, 0
     s.way[i, 0], s.way[i, 1] = 1.0, 0.0
 
@@ -592,10 +589,10 @@ def topple_margin(body, rows, gravity):
 @kernel
 def lies_flat(body, y, rows):
     """Whether a body lies flat and does not tilt."""
-    if algebra.norm(rows[2][0], rows[2][1]) > 1e-9 or abs(y[9]) > LEAVES:
+    if algebra.norm(rows[2][0], rows[2][1]) > 1e-9 or abs(y[solid.RISES]) > LEAVES:
         return False
-    turns = algebra.norm(y[10], y[11]) > LEAVES / body.furthest
-    return not turns and abs(y[2] - body.height) < TOUCH
+    turns = algebra.norm(y[solid.SPIN], y[solid.SPIN + 1]) > LEAVES / body.furthest
+    return not turns and abs(y[solid.UP] - body.height) < TOUCH
 
 
 @kernel
@@ -619,13 +616,17 @@ def carried_flat(body, tau, y, rows, gravity, s):
     if body.kinetic * body.height + off < body.rim:
         return True
     return (
-        algebra.norm(y[7], y[8]) < AT_REST and topple_margin(body, rows, gravity) >= 0
+        algebra.norm(y[solid.VELOCITY], y[solid.VELOCITY + 1]) < AT_REST
+        and topple_margin(body, rows, gravity) >= 0
     )
 
 
 @kernel
 def pressure_centre(body, s):
-    """Where the normal forces of closed points act, from the centre of a round base, in the body."""
+    """Where the normal forces of closed points act together, in the body [m].
+
+    Seen from the centre of a round base, of a polygon from below the centre of mass.
+    """
     x, y, whole = 0.0, 0.0, 1e-300
     for i in range(s.count):
         x += s.lam[i, 2] * (body.points[s.closed[i], 0] - body.centre[0])
@@ -686,14 +687,15 @@ def edge_margin(body, y, rows, gravity, i, j):
     length = algebra.norm(q[0] - p[0], q[1] - p[1])
     # outwards in the plan; how far the edge lies out there, and what acts that way
     normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
-    reach = normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
-    outward, height = normal[0] * gravity[0] + normal[1] * gravity[1], y[2]
+    x, z, height = y[solid.PLACE], y[solid.PLACE + 1], y[solid.UP]
+    reach = normal[0] * (p[0] - x) + normal[1] * (p[1] - z)
+    outward = normal[0] * gravity[0] + normal[1] * gravity[1]
     return -(height * outward + reach * gravity[2]) / height
 
 
 @kernel
 def count_touching(body, y, rows):
-    """Number of points of the base that touch, as if a round base had its four feet."""
+    """Number of vertices of the base that touch, or of the points of a rim that stand for it."""
     n = 0
     for i in range(body.count):
         n += solid.gap(body, y, rows[2], i) <= TOUCH
@@ -704,8 +706,8 @@ def count_touching(body, y, rows):
 def come_to_rest(body, y, s):
     """Make the body rest where it is."""
     s.count, s.rests = 0, 1
-    for k in range(7, 13):
-        y[k] = 0.0
+    solid.set_velocity(y, (0.0, 0.0, 0.0))
+    solid.set_spin(y, (0.0, 0.0, 0.0))
     lay_flat(body, y)
 
 
@@ -715,7 +717,7 @@ def lay_flat(body, y):
     for _ in range(3):
         up = algebra.rotation(y)[2]
         algebra.turn(y, (-up[1], up[0], 0.0))
-    y[2] = body.height
+    y[solid.UP] = body.height
 
 
 @kernel
@@ -723,8 +725,8 @@ def choose_mode(body, tau, y, s):
     """Choose the mode that follows for the points that touch and do not leave; return whether one was found."""
     rows = algebra.rotation(y)
     gravity = forces.effective_gravity_at(s.field, tau)
-    spin = body.height * math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
-    still = math.sqrt(y[7] ** 2 + y[8] ** 2 + y[9] ** 2) + spin < 10 * CLOSE
+    spin = body.height * algebra.length(solid.omega_of(y))
+    still = algebra.length(solid.centre_velocity(y)) + spin < 10 * CLOSE
     if (
         still
         and count_touching(body, y, rows) >= 3
@@ -734,7 +736,8 @@ def choose_mode(body, tau, y, s):
         return True
     was_flying = s.count == 0
     if lies_flat(body, y, rows) and not meets_wall(body, y, rows):
-        slip = algebra.norm(y[7], y[8]) + body.furthest * abs(y[12])
+        slip = algebra.norm(y[solid.VELOCITY], y[solid.VELOCITY + 1])
+        slip += body.furthest * abs(y[solid.SPIN + 2])
         stands = rest_margin(body, y, rows, gravity, s) >= 0
         slides = slip >= 2 * AT_REST or pulled_off(body, gravity) or body.rim > 0
         if slides and carried_flat(body, tau, y, rows, gravity, s):
@@ -929,12 +932,13 @@ def settle(body, y, s):
             q = solid.arm(body, rows[2], s.closed[1])
             e = algebra.minus(q, p)
             omega = algebra.scaled(algebra.dot(e, omega) / algebra.dot(e, e), e)
-            y[10], y[11], y[12] = omega
+            solid.set_spin(y, omega)
         moved = algebra.to_world(rows, p)
-        y[2] = -moved[2]
+        y[solid.UP] = -moved[2]
         if i != solid.rim_contact(body):
-            y[0], y[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
-        y[7], y[8], y[9] = algebra.to_world(rows, algebra.cross(p, omega))
+            x, z = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
+            solid.set_place(y, x, z)
+        solid.set_velocity(y, algebra.to_world(rows, algebra.cross(p, omega)))
     elif kind in (forces.GENERAL, forces.SLIDER):
         close_gaps(body, y, rows, s)
         hold(body, y, algebra.rotation(y), s)
@@ -956,7 +960,7 @@ def close_gaps(body, y, rows, s):
     forces.fill_delassus(body, rows, s.closed, n, s.delassus)
     first = solid.gap(body, y, rows[2], s.closed[0])
     if n == 1:
-        y[2] -= first
+        y[solid.UP] -= first
         return
     second = solid.gap(body, y, rows[2], s.closed[1])
     # vertical displacement at each by a vertical impulse at each: row 3 k + 2 is the vertical at point k
@@ -972,8 +976,11 @@ def close_gaps(body, y, rows, s):
 def close_gaps_at_wall(body, y, s):
     """Move the body by what its closed points are off the ground and the walls.
 
-    Four contacts of an upright body may say one thing twice, and contradict each other by the errors of steps.  So
-    gaps are closed as by soft contacts, which do not move it far for that, and what this leaves of them once more.
+    Each contact k displaces the body as an impulse P_k away from its surface would. Of the compliances W between
+    these, rows 3 k + 2 of the Delassus matrix, follows W P = -gaps. Four contacts of an upright body may say one
+    thing twice, and contradict each other by the errors of steps, so contacts are soft, (W + soft) P = -gaps,
+    which does not move the body far for that. What this leaves of the gaps is closed in the same way, CLOSINGS
+    times.
     """
     n = s.count
     for _ in range(CLOSINGS):
@@ -1007,7 +1014,7 @@ def shift_at(body, y, rows, i, size):
 def lift_at(body, y, rows, i, size):
     """Displace the body as a small vertical impulse at point i would."""
     p = solid.arm(body, rows[2], i)
-    y[2] += size
+    y[solid.UP] += size
     algebra.turn(
         y, algebra.scaled(size, algebra.times(body.inverse, algebra.cross(p, rows[2])))
     )

@@ -29,6 +29,9 @@ from rockfrag.engines.spatial._forces import (
 
 BACKWARD = 1e-8  # slip against its own direction that is rounding [m/s]
 NEAR_FLAT = 1e-6  # tilt below which a rim that rolls goes on to roll [rad]
+SINKS = (
+    -1e-10
+)  # velocity away below which an open point comes down, and not by rounding alone [m/s]
 # over the weight that a contact may pull, or shear beyond its cone, unseen [-]
 LEAST_FORCE = 1e-9
 
@@ -75,14 +78,18 @@ def attempt(body, tau, h, y, s):
 def go_on_by(body, at, rest, tau, y, s):
     """Go on from s.new, the state at ``at`` after ``tau`` [s], by a time ``rest`` of either sign.
 
-    It is so short that the rates at the end of the step to ``at`` suffice; modes with a step of their own take it
-    anew.
+    It is so short that the rates at the end of the step to ``at`` suffice; about an edge the step is taken anew.
     """
-    if kind_of_step(body, s) != forces.GENERAL:
+    kind = kind_of_step(body, s)
+    if kind == forces.PIVOT:
+        pivot.go_on_by(body, tau + at + rest, rest, y, s)
+        return
+    if kind == forces.HINGE:
         attempt(body, tau, at + rest, y, s)
         return
     for i in range(solid.SIZE):
         s.new[i] += rest * s.slopes[STAGES - 1, i]
+    normalise(s.new)
 
 
 @kernel
@@ -99,17 +106,16 @@ def attempt_any(body, tau, h, y, s):
                     new[i] += weight * k[early, i]
         for i in range(solid.SIZE):
             new[i] = y[i] + h * new[i]
-        last = stage == STAGES - 1
-        if last:
+        if stage == STAGES - 1:
             normalise(new)
-        rates(body, tau + INSTANTS[stage] * h, new, k[stage], s, last)
+        rates(body, tau + INSTANTS[stage] * h, new, k[stage], s)
     return error_of(body, h, y, s)
 
 
 @kernel
 def error_of(body, h, y, s):
     """Largest component of the difference to the step of order 4, over its size."""
-    worst, weight = 0.0, solid.weight_of_attitude(body, y)
+    worst, weight = 0.0, solid.weight_of_attitude(body, rotation(y)[2])
     for i in range(13):
         scale = weight if 3 <= i < 7 else 1.0 + abs(y[i])
         worst = max(worst, abs(h * error_rate(s.slopes, i)) / scale)
@@ -118,7 +124,7 @@ def error_of(body, h, y, s):
 
 @kernel
 def slip_along(body, y, rows, i, s):
-    """Slip velocity of closed point i along a direction of the plan."""
+    """Slip of the i-th closed contact along its slip at the beginning of the step [m/s], negative if it turned."""
     u = slip_of(body, y, rows, i, s)
     return u[0] * s.slip[i, 0] + u[1] * s.slip[i, 1]
 
@@ -130,6 +136,16 @@ def is_closed(s, i):
     for k in range(s.count):
         found = found or s.closed[k] == i
     return found
+
+
+@kernel
+def closed_on_ground(s):
+    """Set of the closed contacts with the ground, as bits."""
+    closed = 0
+    for k in range(s.count):
+        if s.closed[k] < solid.WALLS:
+            closed |= 1 << s.closed[k]
+    return closed
 
 
 @kernel
@@ -171,64 +187,95 @@ def slides_flat(s):
 
 @kernel
 def margin(body, y, s):
-    """Return the least of all that must not be negative, and what it belongs to."""
+    """Return the least of all that must not be negative, and what happens where that one vanishes.
+
+    Gaps are in m, forces in N/kg and slips in m/s. That they are compared does no harm: what counts is whether one
+    is negative, and an instant is looked for between margins of one kind. Each is shifted by what is not seen of
+    it.
+    """
     rows = rotation(y)
-    least, what = 1e300, modes.NOTHING
+    least = ground_margin(body, y, rows, s)
+    if body.walls:
+        least = lesser(least, walls_margin(body, y, rows, s))
+    if slides_flat(s):
+        # without a wall a body on its face meets nothing
+        tips = face_margin(body, s)
+        least = lesser(least, tips) if body.walls else tips
+        slip = face_slip(body, y, rows, s)
+        least = lesser(least, (slip, modes.SLIP_ENDS))
+    else:
+        least = lesser(least, contacts_margin(body, y, rows, s))
+    if body.constraints > 0:
+        least = lesser(least, ties_margin(body, y, rows, s))
+    return least
+
+
+@kernel
+def lesser(one, other):
+    """Return the lesser of two margins, each with what it belongs to; the first if the other is no number."""
+    return other if other[0] < one[0] else one
+
+
+@kernel
+def ground_margin(body, y, rows, s):
+    """Least gap between an open point and the ground [m], beyond half of what counts as touching."""
+    least = 1e300
+    closed = closed_on_ground(s)
     turns = cross(rows[2], solid.omega_of(y))
     for i in solid.candidates(body):
-        if not is_closed(s, i):
+        if not forces.in_set(closed, i):
             p = solid.arm(body, rows[2], i)
-            value = y[2] + dot(rows[2], p) + 0.5 * modes.TOUCH
-            # an open point that moves down, and not by rounding alone
-            sinks = y[9] + dot(turns, p) < -1e-10
-            if value < 0.5 * modes.TOUCH and not sinks:
+            value = y[solid.UP] + dot(rows[2], p) + 0.5 * modes.TOUCH
+            if value < 0.5 * modes.TOUCH and not y[solid.RISES] + dot(turns, p) < SINKS:
+                # a point that touches and does not come down has just opened
                 value += modes.TOUCH
-            if value < least:
-                least, what = value, modes.LANDS
+            least = min(least, value)
+    return least, modes.LANDS
+
+
+@kernel
+def walls_margin(body, y, rows, s):
+    """Least gap between an open corner and a wall [m], likewise."""
+    least = 1e300
     for i in solid.wall_candidates(body):
         if not solid.may_meet(body, i) or is_closed(s, i):
             continue
         value = solid.gap_of(body, y, rows, i) + 0.5 * modes.TOUCH
-        meets = solid.approach_of(body, y, rows, i) < -1e-10
+        meets = solid.approach_of(body, y, rows, i) < SINKS
         if value < 0.5 * modes.TOUCH and not meets:
             # what lies a little behind a wall, by the errors of steps, is pushed out as soon as it moves on
             value = max(value + modes.TOUCH, 0.5 * modes.TOUCH)
-        if value < least:
-            least, what = value, modes.LANDS
+        least = min(least, value)
+    return least, modes.LANDS
+
+
+@kernel
+def face_margin(body, s):
+    """Distance of the centre of pressure of a face that slides from its edge [m], over which it tips."""
+    return modes.pressure_margin(body, s) + 1e-12, modes.OPENS
+
+
+@kernel
+def contacts_margin(body, y, rows, s):
+    """Least of what contacts push with, of what their cones leave [N/kg] and of their slip [m/s]."""
     small = LEAST_FORCE * s.field[6]
     # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
     passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
-    on_face = slides_flat(s)
-    if on_face:
-        # where the centre of pressure leaves a face, it tips
-        value = modes.pressure_margin(body, s) + 1e-12
-        if value < least or not body.walls:
-            least, what = value, modes.OPENS
-        value = face_slip(body, y, rows, s)
-        if value < least:
-            least, what = value, modes.SLIP_ENDS
-    for i in range(0 if on_face else s.count):
-        value = s.lam[i, 2] + small
-        if value < least:
-            least, what = value, modes.OPENS
+    least = (1e300, modes.NOTHING)
+    for i in range(s.count):
+        least = lesser(least, (s.lam[i, 2] + small, modes.OPENS))
         if solid.is_smooth(body, s.closed[i]):
             continue
         if s.slides[i] == SLIDES:
-            value = slip_along(body, y, rows, i, s) + (
-                -modes.AT_REST if s.armed[i] else BACKWARD
-            )
-            if value < least:
-                least, what = value, modes.SLIP_ENDS
+            # slip that was fast ends at AT_REST; one that only begins may not turn
+            off = -modes.AT_REST if s.armed[i] else BACKWARD
+            slip = slip_along(body, y, rows, i, s) + off
+            least = lesser(least, (slip, modes.SLIP_ENDS))
         elif not (s.jammed or passes):
-            grip = solid.static_of(body, s.closed[i])
-            value = grip * s.lam[i, 2] - norm(s.lam[i, 0], s.lam[i, 1]) + small
-            if value < least:
-                least, what = value, modes.LEAVES_CONE
-    if body.constraints > 0:
-        value, tie = ties_margin(body, y, rows, s)
-        if value < least:
-            least, what = value, tie
-    return least, what
+            grip = solid.static_of(body, s.closed[i]) * s.lam[i, 2]
+            left = grip - norm(s.lam[i, 0], s.lam[i, 1]) + small
+            least = lesser(least, (left, modes.LEAVES_CONE))
+    return least
 
 
 @kernel
@@ -252,19 +299,26 @@ def ties_margin(body, y, rows, s):
 
 @kernel
 def dips(body, y, h, s):
-    """Whether a point that is open at both ends of a step may have touched inside it."""
+    """Whether a point that is open at both ends of a step may have touched inside it.
+
+    ``y`` is the state at its beginning, s.new that at its end.
+    """
+    if body.rim > 0 and not body.walls and is_closed(s, body.count):
+        # no other point of a rim may touch
+        return False
     new = s.new
     before, after = rotation(y), rotation(new)
     turns, turns_then = (
         cross(before[2], solid.omega_of(y)),
         cross(after[2], solid.omega_of(new)),
     )
+    closed = closed_on_ground(s)
     for i in solid.candidates(body):
-        if not is_closed(s, i):
+        if not forces.in_set(closed, i):
             p = solid.arm(body, before[2], i)
-            sinking = y[9] + dot(turns, p)
-            rising = new[9] + dot(turns_then, solid.arm(body, after[2], i))
-            if touches_between(y[2] + dot(before[2], p), sinking, rising, h):
+            sinking = y[solid.RISES] + dot(turns, p)
+            rising = new[solid.RISES] + dot(turns_then, solid.arm(body, after[2], i))
+            if touches_between(y[solid.UP] + dot(before[2], p), sinking, rising, h):
                 return True
     for i in solid.wall_candidates(body):
         if solid.may_meet(body, i) and not is_closed(s, i):
@@ -278,7 +332,12 @@ def dips(body, y, h, s):
 
 @kernel
 def touches_between(gap, sinking, rising, h):
-    """Whether a point that sinks at the beginning of a step and rises at its end may have touched inside it."""
+    """Whether a point that sinks at the beginning of a step and rises at its end may have touched inside it.
+
+    Under a constant acceleration a point at a ``gap`` [m] that moves with the velocities ``sinking`` and
+    ``rising`` [m/s] at the ends of the step h [s] is lowest at gap - h sinking²/(2 (rising - sinking)).  A
+    fiftieth of the change of the velocity, times h, is left for accelerations that change.
+    """
     if not sinking < 0 < rising:
         return False
     lowest = gap - 0.5 * h * sinking**2 / (rising - sinking)

@@ -45,7 +45,7 @@ def pass_interval(body, tau, dt, y, s):
 def loss_since(body, before, y, s):
     """Take from the velocities what energy was gained since a balance; return what was lost [J/kg]."""
     gained = solid.balance(body, y, s.field[6]) - before
-    solid.pay(body, y, gained, s.field[6])
+    solid.pay(body, y, gained)
     return before - solid.balance(body, y, s.field[6])
 
 
@@ -72,7 +72,9 @@ def take_step(body, tau, h, y, s):
     note_pushes(body, n, s)
     # of the ground's motion, in the effective gravity less gravity itself, and of ties
     y[solid.WORK] += h * (
-        load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[6]) * y[9]
+        load[0] * y[solid.VELOCITY]
+        + load[1] * y[solid.VELOCITY + 1]
+        + (load[2] + s.field[6]) * y[solid.RISES]
     )
     y[solid.WORK] += h * algebra.dot(forces.twist_by_ties(s), solid.omega_of(y))
     for k in range(3):
@@ -93,7 +95,12 @@ def find_near(body, y, rows, h, s):
 
 @kernel
 def add_near(body, y, rows, i, n, h, s):
-    """Add contact i to those that are near, if it is and there is room; return how many there are."""
+    """Add contact i to those that are near, if it is and there is room; return how many there are.
+
+    Of each are kept its number (``near``), its coefficient of friction (``rubs``), how fast it may close in the
+    step (``closes`` [m/s]), and by how much a unit impulse along each of its axes changes the velocity along that
+    axis (``gives``), which is all that Gauss and Seidel's method asks for; its impulse (``shove``) begins at none.
+    """
     gap = solid.gap_of(body, y, rows, i)
     if gap > NEAR or n == forces.MOST_NEAR:
         return n
@@ -105,8 +112,8 @@ def add_near(body, y, rows, i, n, h, s):
     for axis in range(3):
         push = forces.push_along(body, rows, i, axis)
         p = solid.arm(body, rows[2], i)
-        u = solid.in_frame(body, i, forces.response(body, rows, p, p, push))
-        s.gives[n, axis] = u[axis]
+        answer = solid.in_frame(body, i, forces.response(body, rows, p, p, push))
+        s.gives[n, axis] = answer[axis]
         s.shove[n, axis] = 0.0
     return n + 1
 

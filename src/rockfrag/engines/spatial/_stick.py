@@ -37,7 +37,7 @@ def load_of(s, k):
 def fill_velocities(body, y, rows, n, s):
     """Fill in how the contacts s.which move before an impact; return the angular momentum."""
     omega = solid.omega_of(y)
-    velocity = to_body(rows, (y[7], y[8], y[9]))
+    velocity = to_body(rows, solid.centre_velocity(y))
     for k in range(n):
         s.load[k, 0], s.load[k, 1], s.load[k, 2] = velocity
         fill_free(body, rows, k, omega, s)
@@ -72,7 +72,10 @@ def fill_free(body, rows, k, spin, s):
 
 @kernel
 def upward_speed(body, up, k, turn, push, s):
-    """Velocity upwards of contact k after an impulse that leaves the body turning with ``turn``."""
+    """Velocity upwards of the contact k of s.which after an impact [m/s].
+
+    ``turn`` is the angular velocity after it, and ``push`` the impulse for a unit of mass, both in the body.
+    """
     p = solid.arm(body, up, s.which[k])
     after = plus(plus(load_of(s, k), push), cross(turn, p))
     return dot(up, after)
@@ -80,9 +83,13 @@ def upward_speed(body, up, k, turn, push, s):
 
 @kernel
 def others_stay_out(body, up, n, i, j, turn, push, small, s):
-    """Whether no contact but i and j (-1: none) approaches the ground after the impulse of these two."""
+    """Whether no contact but i and j (-1: none) approaches the ground after the impulse of these two.
+
+    ``turn`` and ``push`` are those of :func:`upward_speed`; up to the velocity ``small`` none approaches.
+    """
     for k in range(n):
         stops = k in (i, j)
+        # what is no number does not stay out
         if not stops and not upward_speed(body, up, k, turn, push, s) >= -small:
             return False
     return True
@@ -106,7 +113,11 @@ def room_along(up, push, along, friction):
 
 @kernel
 def split_along(up, first, second, e, friction_first, friction_second):
-    """Share the impulse of an edge along it so that both ends' cones hold, if they can."""
+    """Share the impulse of an edge along it so that both ends' cones hold, if they can.
+
+    ``first`` and ``second`` are the impulses at its ends and ``e`` the unit vector along it, in the body. Each end
+    gets what its cone has room for, in proportion. Returned are the impulses at both ends.
+    """
     near, far = dot(first, e), dot(second, e)
     a = room_along(up, first, near, friction_first)
     b = room_along(up, second, far, friction_second)
@@ -202,6 +213,7 @@ def stick_alone_or_by_two(body, rows, n, least, moment, s):
                 keep(rows, n, i, j, near, far, s)
     if chosen >= 0:
         fill_after(body, rows, n, best_turn, best_push, s)
+        # what sticks is held by static friction, which is asked for where the mode is read off
         for k in range(n):
             s.grip[k] = s.holds[k]
     return chosen, solutions

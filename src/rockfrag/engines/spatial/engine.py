@@ -5,6 +5,7 @@ In: :class:`rockfrag.engines.contract.Cases` of single bodies with a depth. Out:
 """
 
 import math
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -20,7 +21,7 @@ from rockfrag.engines.compile.jit import compiling_alone
 from rockfrag.engines.contract import Case, Cases, Request
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _modes as modes
-from rockfrag.engines.spatial._body import BOND
+from rockfrag.engines.spatial._body import BOND, FRICTION
 from rockfrag.engines.spatial._forces import CASE
 from rockfrag.engines.spatial.body import (
     acting,
@@ -39,7 +40,6 @@ TOLERANCE = 1e-8
 # energy over rest, as a part of what a fall takes, at which a body rests [-]
 CUT_OFF = 1e-6
 AFTER = 30.0  # time after the motion at which an analysis ends at the latest [s]
-RESTS = 99
 
 
 @dataclass(frozen=True)
@@ -245,11 +245,11 @@ def run_scales(
     )
     rows = np.empty((0, kernel.COLUMNS)) if history is None else history
     extra = math.ceil(AFTER / dt)
-    case: Any = np.zeros(1, CASE)[0]
+    bodies, cases = np.asarray(body).reshape(1), np.zeros(1, CASE)
     with compiling_alone(kernel.integrate_scales):
         kernel.integrate_scales(
-            body, acceleration, peaks, scales, dt, g, extra, tolerance, CUT_OFF,
-            found.ends, rows, found.outs, found.counts, case,
+            bodies, acceleration, peaks, scales, dt, g, extra, tolerance, CUT_OFF,
+            found.ends, rows, found.outs, found.counts, cases,
         )  # fmt: skip
     return found
 
@@ -263,7 +263,7 @@ def _outcome(
         overturned=fell,
         certain_time=float(out[kernel.CERTAIN_TIME]),
         fall_direction=float(out[kernel.FALL_AZIMUTH]) if fell else math.nan,
-        fell_over=_named(body, out) if fell else "",
+        fell_over=_named(body, out.tolist()) if fell else "",
         peak_rotation=math.inf if fell else float(out[kernel.PEAK_RATIO]),
         peak_tilt=float(out[kernel.PEAK_TILT]),
         peak_velocity=float(out[kernel.PEAK_SPEED]),
@@ -274,15 +274,15 @@ def _outcome(
         flights=int(counters[modes.FLIGHTS]),
         ambiguous=int(counters[modes.AMBIGUOUS]),
         paradoxes=int(counters[modes.UNSOLVED] + counters[modes.JAMS]),
-        dissipated=(float(out[kernel.LOST]), float(y[14])),
+        dissipated=(float(out[kernel.LOST]), float(y[FRICTION])),
         residual=float(out[kernel.ENERGY_BALANCE]),
         gained=float(out[kernel.GAINED]),
         beyond_friction=float(out[kernel.BEYOND]),
     )
 
 
-def _named(body: np.void, out: Floats) -> str:
-    """Say over what a body fell."""
+def _named(body: np.void, out: Sequence[float]) -> str:
+    """Say over what a body fell: flight, rim, vertex 1, edge 1-2, …; vertices count from 1."""
     first, second = int(out[kernel.FALL_FIRST]), int(out[kernel.FALL_SECOND])
     if first < 0:
         return "flight"
@@ -298,7 +298,7 @@ def history_table(history: Floats, dt: float, height: float) -> pd.DataFrame:
     """Return a history of :func:`run_case` as the table of a :class:`rockfrag.engines.spatial.SpatialResponse`."""
     w, x, y, z = history[:, 3:7].T
     axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
-    closed = np.where(history[:, 14] == RESTS, math.nan, history[:, 14])
+    closed = np.where(history[:, 14] == kernel.RESTS, math.nan, history[:, 14])
     return pd.DataFrame(
         {
             "time_s": np.arange(len(history)) * dt,
@@ -338,7 +338,7 @@ def _write(
     result.peak_velocity[case][:, 0] = outs[:, kernel.PEAK_SPEED]
     result.turn[case][:, 0] = outs[:, kernel.TURN]
     result.fall_direction[case][:, 0] = directions
-    for k, out in enumerate(outs):
+    for k, out in enumerate(outs.tolist()):
         result.fell_over[case][k, 0] = _named(body, out) if fell[k] else ""
         result.walk[case][k, 0] = math.hypot(out[kernel.WALK_X], out[kernel.WALK_Y])
 
@@ -347,6 +347,8 @@ def _write_holding(
     result: Outcomes, case: tuple[int, int], system: System, found: Found
 ) -> None:
     """Write what held a body had to bear under a motion, at all scales, into the outcomes of all."""
+    if not (system.constraints or system.bonds):
+        return
     rows = {row: holder for holder, row in enumerate(acting(system))}
     if system.bonds:
         rows[len(system.constraints)] = BOND
