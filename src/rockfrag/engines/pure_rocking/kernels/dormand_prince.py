@@ -23,7 +23,7 @@ WEIGHTS = np.array(
 ERRORS = np.array(
     [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40]
 )
-"""What the solutions of order 5 and 4 take of the stages' rates, one less the other (table 2)."""
+"""Weights of the stages in :func:`error_rate`."""
 
 
 @inlined_kernel
@@ -33,6 +33,6 @@ def error_rate(k, i):
     ``k`` has the rates at the stages, shape (7, components).
     """
     return (
-        ERRORS[0] * k[0, i] + ERRORS[2] * k[2, i] + ERRORS[3] * k[3, i]
-        + ERRORS[4] * k[4, i] + ERRORS[5] * k[5, i] + ERRORS[6] * k[6, i]
+        71 / 57600 * k[0, i] - 71 / 16695 * k[2, i] + 71 / 1920 * k[3, i]
+        - 17253 / 339200 * k[4, i] + 22 / 525 * k[5, i] - 1 / 40 * k[6, i]
     )  # fmt: skip
