@@ -252,7 +252,8 @@ def test_the_played_page_shows_a_body_in_space_and_says_when_it_falls(
         (["--round"], Block(0.35, 1.2, 300.0, round=True), "round, 35 × 120 cm"),
     ):
         assert main([*case, *base, *output]) == 0
-        text = page.read_text(encoding="utf-8")
+        # numbers and their units are held together by a no-break space
+        text = page.read_text(encoding="utf-8").replace("\u00a0", " ")
         fell = overturns([block], [ground], scales=levels).overturned.ravel()
         assert f"<h1>{name} under x</h1>" in text
         assert (

@@ -66,7 +66,7 @@ def state(rng, body):
 def case():
     """Memory of an analysis on ground at rest."""
     s = plain(np.zeros(1, forces.CASE)[0])
-    s.field[2], s.field[6] = -G, G
+    s.field[2], s.field[forces.GRAVITY] = -G, G
     return s
 
 
@@ -417,8 +417,7 @@ def test_a_body_is_beyond_its_balance_where_its_centre_leaves_the_base():
             y = leaning(body, part * critical, towards)
             assert whole.is_beyond(body, y) == (part > 1)
             out = np.zeros(whole.OUTCOME)
-            up = whole.note_peaks(body, y, (0.0, 0.0), out)
-            assert up == pytest.approx(math.cos(part * critical))
+            whole.note_peaks(body, y, attitude(y), out)
             assert out[whole.PEAK_RATIO] == pytest.approx(part)
             assert out[whole.PEAK_TILT] == pytest.approx(part * critical)
 
@@ -432,19 +431,39 @@ def test_a_fall_is_certain_only_beyond_all_that_the_ground_may_still_do():
     for part, falls in ((-0.01, False), (0.01, True)):
         y = leaning(body, balance + steepest + part, 0.0)
         y[11] = 0.1
-        peaks = np.array([2.0, 1.0])
-        assert whole.fall_is_certain(body, y, peaks, 1.0, G) == falls
-        assert not whole.fall_is_certain(body, y, peaks, 1.2, G)
+        peaks, rows = np.array([2.0, 1.0]), attitude(y)
+        assert whole.fall_is_certain(body, y, rows, peaks, 1.0, G) == falls
+        assert not whole.fall_is_certain(body, y, rows, peaks, 1.2, G)
         y[11] = -0.1
-        assert not whole.fall_is_certain(body, y, peaks, 1.0, G)
+        assert not whole.fall_is_certain(body, y, rows, peaks, 1.0, G)
+
+
+def test_a_fall_is_over_contacts_with_the_ground():
+    """A corner that touches a wall is closed too, and is no vertex of the base."""
+    y, s, out = np.zeros(solid.SIZE), case(), np.zeros(whole.OUTCOME)
+    y[3] = 1.0
+    wall = solid.WALLS + 1
+    for closed, expected in (
+        ((), (-1, -1)),
+        ((2,), (2, -1)),
+        ((2, 3), (2, 3)),
+        ((wall, 2), (2, -1)),
+        ((1, wall, 2), (1, 2)),
+    ):
+        mode(s, *closed)
+        whole.note_fall(y, s, 1.0, out)
+        assert (out[whole.FALL_FIRST], out[whole.FALL_SECOND]) == expected
 
 
 def test_turns_about_the_vertical_are_counted_whole():
-    y, out, before, turn = np.zeros(solid.SIZE), np.zeros(whole.OUTCOME), 0.0, 0.0
+    y, out, turn = np.zeros(solid.SIZE), np.zeros(whole.OUTCOME), 0.0
+    before = (1.0, 0.0)
     for turn in np.linspace(0, 9.0, 50):
         y[3], y[6] = math.cos(turn / 2), math.sin(turn / 2)
         before = whole.note_turn(y, before, out)
-    assert out[whole.TURN] == pytest.approx(turn)
+        since = whole.turn_since(before, y)
+        assert out[whole.TURN] + since == pytest.approx(turn)
+        assert abs(since) < 1.2
 
 
 def test_a_round_body_touches_at_its_lowest_point_which_goes_round_as_the_axis_does():

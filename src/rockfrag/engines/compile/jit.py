@@ -106,7 +106,7 @@ for _module in (elementary, geometry, couple, position):
 def compiling_alone(entry: Any) -> Iterator[None]:
     """Let the first of several processes compile an entry kernel; the others wait, at most ``PATIENCE_S``."""
     folder: Any = getattr(getattr(entry, "_cache", None), "cache_path", None)
-    alone = folder and not entry.signatures
+    alone = folder and not entry.overloads
     with (
         locked(Path(folder) / f"{entry.__name__}.lock", PATIENCE_S)
         if alone

@@ -9,7 +9,7 @@ mechanics stands here; ``docs/space.md``, "Coordinates", says what the quaternio
 
 import math
 
-from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.compile.jit import inlined_kernel, kernel
 
 TINY = 1e-300  # what a length is at least where it divides: its direction is then none, or any
 
@@ -34,6 +34,12 @@ def cross(a, b):
 def norm(x, y):
     """Length of the vector (x, y), whose components are neither huge nor tiny."""
     return math.sqrt(x * x + y * y)
+
+
+@kernel
+def length(a):
+    """Length of a vector."""
+    return math.sqrt(dot(a, a))
 
 
 @kernel
@@ -80,6 +86,19 @@ def rotation_of(w, x, y, z):
     )
 
 
+@inlined_kernel
+def quaternion_rate(attitude, omega):
+    """Rate of a quaternion q, half of q times ω, with the angular velocity ω in the body [1/s]."""
+    w, x, y, z = attitude
+    a, b, c = omega
+    return (
+        -0.5 * (x * a + y * b + z * c),
+        0.5 * (w * a + y * c - z * b),
+        0.5 * (w * b + z * a - x * c),
+        0.5 * (w * c + x * b - y * a),
+    )
+
+
 @kernel
 def to_world(rows, a):
     """Components in the world of a vector of the body, R a."""
@@ -114,9 +133,10 @@ def turn(y, angle):
 @kernel
 def normalise(y):
     """Give the quaternion y[3:7] of a state the length 1."""
-    length = math.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
+    square = y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6]
+    per_length = 1.0 / math.sqrt(square)
     for i in range(3, 7):
-        y[i] /= length
+        y[i] *= per_length
 
 
 @kernel

@@ -4,13 +4,20 @@ A state y holds C (0:3), the centre of mass relative to the ground; the quaterni
 velocity of C (7:10, world); the angular velocity (10:13, body); the work done by the ground's motion (13) and
 the energy lost by friction (14).  Everything is for a unit of mass: energies in J/kg, forces in N/kg.
 
+Symbols in all modules of this folder; "in the body" and "in the world" say which axes a vector's parts are along:
+
+- ``rows``: rows of the attitude R, the world's axes in the body, of which ``rows[2]``, or ``up``, is the vertical,
+  n of equation 3;
+- ``omega``, ``alpha``, ``turn``: angular velocity [rad/s], acceleration [rad/s²], and velocity after an impact, in
+  the body; ``weight``: effective gravity in the body [N/kg];
+- ``p``, ``q``: arms of contacts from the centre of mass [m], ``e``: unit vector along an edge, in the body;
+- ``push``: impulse [N s/kg] or force [N/kg] at a contact, in the body if nothing else is said;
+- ``s``: record ``CASE`` with the mode; ``s.field[GRAVITY]`` is gravity on ground at rest [m/s²];
+- ``i``: number of a contact. A polygon's vertices are 0 to count - 1; the lowest point of a rim is ``count``; from
+  WALLS on follow the corners at walls: MOST_CORNERS numbers a wall, one a corner.
+
 In: a record ``BODY`` and a state. Out: arms [m], velocities [m/s] and heights of points. Theory:
 ``docs/space.md``, "Coordinates", equations 1 to 3 and 9.
-
-- ``rows``: the world's axes as the body sees them; ``up``: rows[2], the vertical, n of equation 3
-- ``omega``: angular velocity in the body [rad/s]; ``p``: a point of the body from C, in the body [m]
-- ``i``: number of a contact. A polygon's vertices are 0 to count - 1; the lowest point of a rim is ``count``; from
-  WALLS on follow the corners at walls: MOST_CORNERS numbers a wall, one a corner
 """
 
 import math
@@ -26,7 +33,6 @@ from rockfrag.engines.spatial._algebra import (
     minus,
     norm,
     plus,
-    rotation,
     times,
     to_world,
 )
@@ -163,7 +169,9 @@ def arm_and_bias(body, up, omega, i):
     if i != rim_contact(body):
         p = (body.points[i, 0], body.points[i, 1], body.points[i, 2])
         return p, cross(omega, cross(omega, p))
-    per_sine = 1.0 / max(norm(up[0], up[1]), TINY)
+    square = max(up[0] * up[0] + up[1] * up[1], TINY)
+    # the root and the division do not wait for each other
+    per_sine = math.sqrt(square) * (1.0 / square)
     x, y = -up[0] * per_sine, -up[1] * per_sine
     p = (body.centre[0] + body.rim * x, body.centre[1] + body.rim * y, -body.height)
     # how fast the lowest point goes round the rim
@@ -174,7 +182,7 @@ def arm_and_bias(body, up, omega, i):
 
 
 @kernel
-def weight_of_attitude(body, y):
+def weight_of_attitude(body, up):
     """Size of an error of the attitude that counts as an error of one of other numbers [-].
 
     Of a rim an error δ turns the contact round it by δ over the tilt, so that the flatter the body the less it may
@@ -182,7 +190,6 @@ def weight_of_attitude(body, y):
     """
     if body.rim == 0.0:
         return 1.0
-    up = rotation(y)[2]
     return min(1.0, 1e3 * norm(up[0], up[1]) + 1e-4)
 
 
@@ -199,7 +206,7 @@ def gap_of(body, y, rows, i):
         return gap(body, y, rows[2], i)
     wall = wall_of(i)
     corner = to_world(rows, arm(body, rows[2], i))
-    east, north = y[0] + corner[0], y[1] + corner[1]
+    east, north = y[PLACE] + corner[0], y[PLACE + 1] + corner[1]
     return body.distance[wall] + body.away[wall, 0] * east + body.away[wall, 1] * north
 
 
@@ -262,6 +269,45 @@ def may_meet(body, i):
 
 
 @kernel
+def attitude_of(y):
+    """Attitude, a quaternion."""
+    return (y[ATTITUDE], y[ATTITUDE + 1], y[ATTITUDE + 2], y[ATTITUDE + 3])
+
+
+@kernel
+def set_place(y, x, z):
+    """Put the centre of mass at a place in the plan."""
+    y[PLACE], y[PLACE + 1] = x, z
+
+
+@kernel
+def set_attitude(y, attitude):
+    """Give a body an attitude."""
+    for k in range(4):
+        y[ATTITUDE + k] = attitude[k]
+
+
+@kernel
+def centre_velocity(y):
+    """Velocity of the centre of mass in the world."""
+    return (y[VELOCITY], y[VELOCITY + 1], y[VELOCITY + 2])
+
+
+@kernel
+def set_velocity(y, velocity):
+    """Give the centre of mass a velocity in the world."""
+    for k in range(3):
+        y[VELOCITY + k] = velocity[k]
+
+
+@kernel
+def set_spin(y, omega):
+    """Give the body an angular velocity in the body."""
+    for k in range(3):
+        y[SPIN + k] = omega[k]
+
+
+@kernel
 def omega_of(y):
     """Angular velocity in the body [rad/s]."""
     return (y[SPIN], y[SPIN + 1], y[SPIN + 2])
@@ -271,7 +317,7 @@ def omega_of(y):
 def point_velocity(y, rows, p):
     """Velocity in the world of the body's point p [m/s]."""
     turned = to_world(rows, cross(omega_of(y), p))
-    return (y[7] + turned[0], y[8] + turned[1], y[9] + turned[2])
+    return (y[VELOCITY] + turned[0], y[VELOCITY + 1] + turned[1], y[UPWARD] + turned[2])
 
 
 @kernel
@@ -283,10 +329,9 @@ def velocity_of(body, y, rows, i):
 @kernel
 def kinetic_energy(body, y):
     """Energy of motion, v²/2 + ω·J ω/2 [J/kg]."""
-    omega = omega_of(y)
-    return 0.5 * (
-        y[7] ** 2 + y[8] ** 2 + y[9] ** 2 + dot(omega, times(body.inertia, omega))
-    )
+    velocity, omega = centre_velocity(y), omega_of(y)
+    momentum = times(body.inertia, omega)
+    return 0.5 * (dot(velocity, velocity) + dot(omega, momentum))
 
 
 @kernel
@@ -311,15 +356,17 @@ def balance(body, y, g):
 
 
 @kernel
-def pay(body, y, gained, g):
+def pay(body, y, gained):
     """Take energy that was gained [J/kg] from the velocities, as far as there is any.
 
     All velocities shrink by √(1 - gained/kinetic energy).
     """
-    kinetic = energy(body, y, g) - g * (y[HEIGHT] - body.height)
-    if gained > 0.0 and kinetic > 0.0:
-        for k in range(VELOCITY, WORK):
-            y[k] *= math.sqrt(max(1.0 - gained / kinetic, 0.0))
+    moving = kinetic_energy(body, y)
+    if gained > 0.0 and moving > 0.0:
+        left = math.sqrt(max(1.0 - gained / moving, 0.0))
+        for k in range(3):
+            y[VELOCITY + k] *= left
+            y[SPIN + k] *= left
 
 
 @kernel
@@ -372,4 +419,4 @@ def meeting(body, k):
 def position_of_base(y, rows, p):
     """Where in the plan the body's point p is, (x, y) in axes of the ground [m]."""
     moved = to_world(rows, p)
-    return (y[0] + moved[0], y[1] + moved[1])
+    return (y[PLACE] + moved[0], y[PLACE + 1] + moved[1])

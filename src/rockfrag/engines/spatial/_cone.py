@@ -205,10 +205,10 @@ def fill_slopes(s, size, x, pace):
 
 @kernel
 def newton(s, size, pace, small):
-    """Improve the impulses of a set until :func:`residuals` is at most ``small`` [m/s]; return whether it is.
+    """Improve the impulses of the members of a set until the residuals vanish; return whether they do.
 
-    The method is damped: a step is halved until the residual falls. ``s.right`` holds the residuals, ``s.vector``
-    the step, ``s.trial`` the impulses after it. It gives up where steps leave the residual as it was.
+    ``pace`` is one over the largest compliance, by which impulses and velocities are compared, and ``small`` the
+    residual [m/s] at which it ends. A step is halved until it takes away a tenth of what it should.
     """
     x = s.impulse
     worst = residuals(s, size, x, pace, s.right)
@@ -470,20 +470,26 @@ def slip_kinetically(s, size, slow):
 
 @kernel
 def off_direction(s, i, e, f):
-    """How far contact i is driven off the unit vector (e, f) along which it slides (``docs/space.md``, 16).
+    """How far contact i would be driven off the unit vector (e, f) of the plan if it slid that way alone.
 
-    Returned are, with s = (e, f), the slip across it times d, s × z [m/s]; d, by which the normal impulse is
-    -b_n/d; and the slip along it times d, s·z [m/s]. Both d and z are linear in s, so that s × z has at most four
-    zeros around the circle.
+    With u = W P + b (equation 5 of ``docs/space.md``), P = P_n (-µ e, -µ f, 1) and u_n = 0 the normal impulse is
+    P_n = -b_n / D with D = W_nn - µ (W_nx e + W_ny f), and the slip u_t. Both D and D u_t are linear in (e, f), so
+    that the slip across (e, f) times D has at most four zeros around the circle.
+
+    Returns
+    -------
+    across : slip across (e, f), times D
+    denominator : D
+    along : slip along (e, f), times D
     """
-    a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
-    w, mu = s.delassus, s.friction[i]
-    d = w[c, c] - mu * (w[c, a] * e + w[c, b] * f)
-    # z, the slip times d
-    x = s.free[a] * d - s.free[c] * (w[a, c] - mu * (w[a, a] * e + w[a, b] * f))
-    y = s.free[b] * d - s.free[c] * (w[b, c] - mu * (w[b, a] * e + w[b, b] * f))
-    across, along = e * y - f * x, e * x + f * y
-    return across, d, along
+    x, y, z = 3 * i, 3 * i + 1, 3 * i + 2
+    w, b, friction = s.delassus, s.free, s.friction[i]
+    denominator = w[z, z] - friction * (w[z, x] * e + w[z, y] * f)
+    by_unit_x = w[x, z] - friction * (w[x, x] * e + w[x, y] * f)
+    by_unit_y = w[y, z] - friction * (w[y, x] * e + w[y, y] * f)
+    slip_x = b[x] * denominator - b[z] * by_unit_x
+    slip_y = b[y] * denominator - b[z] * by_unit_y
+    return e * slip_y - f * slip_x, denominator, e * slip_x + f * slip_y
 
 
 @kernel
@@ -523,10 +529,10 @@ def slide_alone(s, n, i):
 
 @kernel
 def direction_between(s, i, p, q, u, v, before, after):
-    """Find the unit vector between (p, q) and (u, v) at which contact i is not driven off it.
+    """Find the direction in which contact i slides on, between two, by false position (Illinois).
 
-    ``before`` and ``after`` are the first of :func:`off_direction` at these two, of opposite signs. The root is
-    found by false position with halved ends (Illinois).
+    ``before`` and ``after``, of opposite signs, are what :func:`off_direction` first returns of the unit vectors
+    (p, q) and (u, v); returned is the unit vector between them where it vanishes.
     """
     low, high, side = 0.0, 1.0, 0
     e, f = p, q

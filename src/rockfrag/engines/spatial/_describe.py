@@ -36,22 +36,25 @@ def fill_body(body: Any, g: float) -> bool:
     -------
     Whether the centre of mass is above the base.
     """
-    _invert(body.inertia, body.inverse)
+    # fields of a record are looked up slowly outside of kernels
+    inertia, points, abouts = body.inertia, body.points, body.about
+    inverses, height = body.about_inverse, body.height
+    _invert(inertia, body.inverse)
     if body.rim > 0:
         _fill_rim(body)
     else:
         _reach_of_polygon(body)
-    body.barrier = g * (hypot(body.nearest, body.height) - body.height)
+    body.barrier = g * (hypot(body.nearest, height) - height)
     for i in range(body.count):
-        p, about = body.points[i], body.about[i]
-        p[2] = -body.height
+        p, about = points[i], abouts[i]
+        p[2] = -height
         square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
         # tensor about the point (equation 4): J + |p|² 1 - p pᵀ
         for j in range(3):
             for k in range(3):
-                about[j, k] = body.inertia[j, k] - p[j] * p[k]
+                about[j, k] = inertia[j, k] - p[j] * p[k]
             about[j, j] += square
-        _invert(about, body.about_inverse[i])
+        _invert(about, inverses[i])
     return bool(body.nearest > 0)
 
 
@@ -64,11 +67,11 @@ def _fill_rim(body: Any) -> None:
     - ``pass_turn`` and ``slide_turn``: turn of the contact in a pass near flat, π √(1 + ρ²/(A + h²)) where it
       rolls, and π √(1 + ρ²/A) where it slides without friction [rad], equation 20.
     """
-    radius, x, y = body.rim, body.centre[0], body.centre[1]
+    radius, x, y, points = body.rim, body.centre[0], body.centre[1], body.points
     body.count = FEET
     for i in range(FEET):
         sine, cosine = sin_cos(i * 2 * math.pi / FEET)
-        body.points[i, 0], body.points[i, 1] = x + radius * cosine, y + radius * sine
+        points[i, 0], points[i, 1] = x + radius * cosine, y + radius * sine
     off = hypot(x, y)
     body.nearest, body.furthest = radius - off, radius + off
     body.twist = 2 * radius / 3

@@ -16,7 +16,8 @@ import math
 import numpy as np
 
 from rockfrag.base.arrays import fields, whole
-from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.compile.jit import inlined_kernel, kernel
+from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial._algebra import (
     cross,
@@ -49,8 +50,9 @@ GRAVITY = 6
 STAGES = 7
 # of the series of an angle in a step
 HINGE_ORDER = 7
-# what is integrated of a body on one contact that sticks: attitude, angular velocity, place in the plan, work
-TURNING = 10
+# numbers that are integrated of a body on one contact that sticks: attitude and angular velocity, on which rates
+# depend; and what follows along the step, the place in the plan and the work
+TURNING, ALONG = 7, 3
 
 CASE = np.dtype(
     [
@@ -85,11 +87,10 @@ CASE = np.dtype(
         # a step: rates at its stages, the state at its end, slip at its beginning
         *fields("slopes", STAGES, solid.SIZE),
         *fields("new", solid.SIZE),
-        # the same of a body that turns about one contact; and the state at its beginning
-        *fields("turning", STAGES, TURNING),
+        # rates of a body that turns about one contact, at the beginning and at the end of a step
+        *fields("turning", 2, TURNING + ALONG),
         # series of the angle of a body that rocks about an edge, and of its sine and cosine
         *fields("angle sine cosine", HINGE_ORDER + 1),
-        *fields("turned turned_before", TURNING),
         *fields("slip", MOST, 2),
         *whole("armed", MOST),
         *whole("counters", 8),
@@ -163,9 +164,9 @@ def stretch_of(body, y, rows, i):
     p = (body.knot[i, 0], body.knot[i, 1], body.knot[i, 2])
     at, u = to_world(rows, p), solid.point_velocity(y, rows, p)
     east, north, up = (
-        body.anchor[i, 0] - y[0] - at[0],
-        body.anchor[i, 1] - y[1] - at[1],
-        body.anchor[i, 2] - y[2] - at[2],
+        body.anchor[i, 0] - y[solid.PLACE] - at[0],
+        body.anchor[i, 1] - y[solid.PLACE + 1] - at[1],
+        body.anchor[i, 2] - y[solid.HEIGHT] - at[2],
     )
     length = math.sqrt(east * east + north * north + up * up)
     way = (east / length, north / length, up / length)
@@ -348,7 +349,7 @@ def load_on(body, y, rows, gravity, s):
     return plus(weight, (s.pulled[0], s.pulled[1], s.pulled[2]))
 
 
-@kernel
+@inlined_kernel
 def pivot_acceleration(body, p, turned, omega, weight, i, s):
     """Angular acceleration about a sticking point i [rad/s²] and the force at it [N/kg] (equation 4).
 
@@ -453,44 +454,48 @@ def slide_on_one_point(body, y, rows, omega, free_spin, weight, s):
 
 
 @kernel
-def hinge_acceleration(body, rows, omega, weight, i, j, s):
-    """Angular acceleration about the edge from point i to j, which both stick, and the force, in the body.
-
-    The acceleration [rad/s²] is the part of equation 4 along the edge's unit vector e; the force [N/kg] is that of
-    both ends together; returned is e too.
-    """
-    p, q = solid.arm(body, rows[2], i), solid.arm(body, rows[2], j)
-    edge = minus(q, p)
-    length = math.sqrt(dot(edge, edge))
-    e = scaled(1.0 / length, edge)
-    b = solid.bias(body, rows[2], omega, p, i)
-    load = plus(b, weight)
-    gyroscopic = cross(omega, times(body.inertia, omega))
-    moment = minus(minus(twist_by_ties(s), gyroscopic), cross(p, load))
-    alpha = scaled(dot(e, moment) / dot(e, times(body.about[i], e)), e)
-    return alpha, scaled(-1.0, plus(cross(alpha, p), load)), e
+def edge_of(body, up, s):
+    """Arm of the first of two closed contacts, the unit vector from it to the second, and their distance [m]."""
+    p, q = solid.arm(body, up, s.closed[0]), solid.arm(body, up, s.closed[1])
+    way = minus(q, p)
+    length = math.sqrt(dot(way, way))
+    return p, scaled(1.0 / length, way), length
 
 
 @kernel
-def split_force(body, rows, omega, alpha, force, e, s):
-    """Fill s.lam with the forces of a hinge at its two ends [N/kg], in axes of the ground (equation 13).
+def edge_forces(body, rows, edge, spin, weight, s):
+    """Fill s.lam with the forces at both ends of an edge that stick [N/kg], in axes of the ground (equation 13).
 
-    ``alpha``, ``force`` and ``e`` are what :func:`hinge_acceleration` returned.
+    ``edge`` is what :func:`edge_of` returns and ``spin`` the angular velocity about it [rad/s]. Returned are the
+    angular acceleration about the edge [rad/s²], which is the part of equation 4 along it, and the force of both
+    ends together in the body [N/kg].
     """
-    p, q = (
-        solid.arm(body, rows[2], s.closed[0]),
-        solid.arm(body, rows[2], s.closed[1]),
-    )
-    gyroscopic = minus(cross(omega, times(body.inertia, omega)), twist_by_ties(s))
+    p, e, length = edge
+    twist = twist_by_ties(s)
+    square = spin * spin
+    inertia = dot(e, times(body.about[s.closed[0]], e))
+    alpha = dot(e, minus(twist, cross(p, weight))) / inertia
+    bias = scaled(square, minus(scaled(dot(e, p), e), p))
+    force = scaled(-1.0, plus(plus(scaled(alpha, cross(e, p)), bias), weight))
     # but for its part along the edge, the force at the far end follows from the moment about the near one
-    left = minus(plus(times(body.inertia, alpha), gyroscopic), cross(p, force))
-    far = to_world(rows, scaled(1.0 / dot(minus(q, p), e), cross(left, e)))
-    edge, friction = to_world(rows, e), body.static
+    momentum = times(body.inertia, e)
+    left = plus(scaled(alpha, momentum), scaled(square, cross(e, momentum)))
+    left = minus(minus(left, twist), cross(p, force))
+    far = scaled(1.0 / length, cross(left, e))
+    share_force(body, rows, e, force, far, s)
+    return alpha, force
+
+
+@kernel
+def share_force(body, rows, e, force, far, s):
+    """Share the part of the force of an edge that is along it so that both ends hold if they can; fill s.lam."""
+    far, edge = to_world(rows, far), to_world(rows, e)
     near = minus(to_world(rows, force), far)
     along = dot(near, edge)
     across = minus(near, scaled(along, edge))
-    first = max(friction**2 * across[2] ** 2 - across[0] ** 2 - across[1] ** 2, 0.0)
-    second = max(friction**2 * far[2] ** 2 - far[0] ** 2 - far[1] ** 2, 0.0)
+    friction = body.static * body.static
+    first = max(friction * across[2] ** 2 - across[0] ** 2 - across[1] ** 2, 0.0)
+    second = max(friction * far[2] ** 2 - far[0] ** 2 - far[1] ** 2, 0.0)
     first, second = math.sqrt(first), math.sqrt(second)
     part = 0.5 if first + second == 0.0 else first / (first + second)
     for k in range(3):
@@ -655,12 +660,11 @@ def largest_compliance(s, n):
 
 
 @kernel
-def rates(body, tau, y, dy, s, split=True):
+def rates(body, tau, y, dy, s):
     """Fill ``dy``, (15,), with dy/dt, and s.lam with the contact forces along and away from each contact [N/kg].
 
-    ``tau`` is the time in the interval [s], at whose beginning s.field holds the effective gravity. Forces of a
-    hinge's two ends are filled in only if its force is ``split``. Each kind of mode has its own equation: 4, its
-    part along an edge, or the linear system of all others (``docs/space.md``).
+    ``tau`` is the time in the interval [s], at whose beginning s.field holds the effective gravity. Each kind of
+    mode has its own equation: 4, its part along an edge, or the linear system of all others (``docs/space.md``).
     """
     rows = rotation(y)
     omega = solid.omega_of(y)
@@ -678,10 +682,9 @@ def rates(body, tau, y, dy, s, split=True):
         s.lam[0, 0], s.lam[0, 1], s.lam[0, 2] = pushed
         acceleration = plus(load, pushed)
     elif kind == HINGE:
-        i, j = s.closed[0], s.closed[1]
-        alpha, force, e = hinge_acceleration(body, rows, omega, weight, i, j, s)
-        if split:
-            split_force(body, rows, omega, alpha, force, e, s)
+        edge = edge_of(body, rows[2], s)
+        turned, force = edge_forces(body, rows, edge, dot(edge[1], omega), weight, s)
+        alpha = scaled(turned, edge[1])
         acceleration = plus(load, to_world(rows, force))
     elif kind == SLIDER:
         spin = solid.free_spin(body, omega, twist_by_ties(s))
@@ -709,7 +712,9 @@ def rates(body, tau, y, dy, s, split=True):
                 alpha = plus(alpha, turned_by(body, rows, s.closed[i], push, twist))
     fill_rates(y, omega, alpha, acceleration, dy)
     dy[solid.WORK] = (
-        load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[GRAVITY]) * y[9]
+        load[0] * y[solid.VELOCITY]
+        + load[1] * y[solid.VELOCITY + 1]
+        + (load[2] + s.field[GRAVITY]) * y[solid.UPWARD]
     )
     dy[solid.WORK] += dot(twist_by_ties(s), omega)
     dy[solid.FRICTION] = lost
@@ -722,15 +727,13 @@ def fill_rates(y, omega, alpha, acceleration, dy):
     The quaternion q changes by q ∘ ω/2, ``omega`` in the body [rad/s]. ``acceleration`` is that of the centre of
     mass in the world [m/s²], ``alpha`` the angular one in the body [rad/s²].
     """
-    qw, qx, qy, qz = y[3], y[4], y[5], y[6]
-    dy[0], dy[1], dy[2] = y[7], y[8], y[9]
-    dy[3] = -0.5 * (qx * omega[0] + qy * omega[1] + qz * omega[2])
-    dy[4] = 0.5 * (qw * omega[0] + qy * omega[2] - qz * omega[1])
-    dy[5] = 0.5 * (qw * omega[1] + qz * omega[0] - qx * omega[2])
-    dy[6] = 0.5 * (qw * omega[2] + qx * omega[1] - qy * omega[0])
+    attitude = algebra.quaternion_rate(solid.attitude_of(y), omega)
     for k in range(3):
-        dy[7 + k] = acceleration[k]
-        dy[10 + k] = alpha[k]
+        dy[solid.PLACE + k] = y[solid.VELOCITY + k]
+        dy[solid.VELOCITY + k] = acceleration[k]
+        dy[solid.SPIN + k] = alpha[k]
+    for k in range(4):
+        dy[solid.ATTITUDE + k] = attitude[k]
 
 
 @kernel
@@ -754,5 +757,5 @@ def push_at(body, y, rows, i, impulse, twist=1.0):
     impulse = solid.from_frame(body, i, impulse)
     turned = turned_by(body, rows, i, impulse, twist)
     for k in range(3):
-        y[7 + k] += impulse[k]
-        y[10 + k] += turned[k]
+        y[solid.VELOCITY + k] += impulse[k]
+        y[solid.SPIN + k] += turned[k]

@@ -10,8 +10,6 @@ In: a state and a mode with two such contacts. Out: the state at the end of a st
 Theory: ``docs/space.md``, equations 8, 13 and 22.
 """
 
-import math
-
 from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
@@ -39,9 +37,8 @@ def attempt(body, tau, h, y, s):
     the step [s].
     """
     rows = rotation(y)
-    p, q = solid.arm(body, rows[2], s.closed[0]), solid.arm(body, rows[2], s.closed[1])
-    edge = minus(q, p)
-    e = scaled(1.0 / math.sqrt(dot(edge, edge)), edge)
+    edge = forces.edge_of(body, rows[2], s)
+    p, e, _ = edge
     inertia = dot(e, times(body.about[s.closed[0]], e))
     field = s.field
     weight = to_body(rows, forces.effective_gravity_at(field, tau))
@@ -50,17 +47,21 @@ def attempt(body, tau, h, y, s):
     upright = cross(p, e)
     turned = minus(p, scaled(dot(p, e), e))
     scale = h * h / inertia
+    started = h * dot(e, solid.omega_of(y))
     fill_series(
         s,
-        h * dot(e, solid.omega_of(y)),
+        started,
         (scale * dot(upright, weight), scale * dot(turned, weight)),
         (scale * dot(upright, rate), scale * dot(turned, rate)),
     )
-    angle, speed, work = sums(s)
-    write_state(body, y, e, p, (angle, speed / h), s)
-    lifted = s.field[forces.GRAVITY] * (s.new[2] - y[2])
-    s.new[solid.WORK] = y[solid.WORK] + inertia * work / (h * h) + lifted
-    end_forces(body, tau + h, s)
+    angle, speed = sums(s)
+    rows = write_state(y, e, p, (angle, speed / h), s)
+    lifted = s.field[forces.GRAVITY] * (s.new[solid.HEIGHT] - y[solid.HEIGHT])
+    # the work of the moment is what the energy of the turn has grown by
+    work = 0.5 * inertia * (speed * speed - started * started) / (h * h)
+    s.new[solid.WORK] = y[solid.WORK] + work + lifted
+    weight = to_body(rows, forces.effective_gravity_at(field, tau + h))
+    forces.edge_forces(body, rows, edge, speed / h, weight, s)
     return abs(s.angle[ORDER]) * ORDER / h
 
 
@@ -90,22 +91,39 @@ def fill_series(s, speed, moment, growth):
 
 @kernel
 def sums(s):
-    """Angle and its rate at the end of a step [rad], and the work of the moment over the inertia [rad²]."""
+    """Angle at the end of a step [rad], and its rate times the step [rad]."""
     angle = s.angle
-    turned, speed, work = 0.0, 0.0, 0.0
+    turned, speed = 0.0, 0.0
     for k in range(ORDER, 0, -1):
         turned += angle[k]
         speed += k * angle[k]
-    for k in range(ORDER, 1, -1):
-        for j in range(1, ORDER + 2 - k):
-            # k (k - 1) angle_k is the moment's coefficient, j angle_j that of the rate
-            work += k * (k - 1) * angle[k] * j * angle[j] / (k + j - 2.0)
-    return turned, speed, work
+    return turned, speed
 
 
 @kernel
-def write_state(body, y, e, p, turned, s):
-    """Write the state after a turn about the edge to s.new.
+def landing(body, y, i, part, below, s):
+    """Part of a step after which an open point is ``below`` the ground, by Newton's method from one near it.
+
+    ``y`` is the state at the beginning of the step, whose series are those of ``s``. A point at d from an end of
+    the edge is at the height (d·e)(e·k) + [d - (d·e) e]·k cos ϑ + (e × d)·k sin ϑ over it, with k upwards.
+    """
+    up = rotation(y)[2]
+    p, e, _ = forces.edge_of(body, up, s)
+    d = minus(solid.arm(body, up, i), p)
+    level = dot(d, e) * dot(e, up)
+    upright, turned = dot(d, up) - level, dot(cross(e, d), up)
+    for _ in range(4):
+        value, rate = 0.0, 0.0
+        for k in range(ORDER - 1, -1, -1):
+            rate = rate * part + value
+            value = value * part + upright * s.cosine[k] + turned * s.sine[k]
+        part -= (value + level + below) / rate
+    return part
+
+
+@kernel
+def write_state(y, e, p, turned, s):
+    """Write the state after a turn about the edge to s.new; return the rows of its attitude.
 
     ``e`` and ``p`` are the edge's direction and its first end from the centre of mass, in the body, and ``turned``
     the angle of the turn and its rate.
@@ -114,28 +132,22 @@ def write_state(body, y, e, p, turned, s):
     # the attitude before, times the quaternion of the turn
     sine, cosine = sin_cos(0.5 * turned[0])
     a, b, c = sine * e[0], sine * e[1], sine * e[2]
-    w, x, i, z = y[3], y[4], y[5], y[6]
-    new[3] = w * cosine - (x * a + i * b + z * c)
-    new[4] = x * cosine + (w * a + i * c - z * b)
-    new[5] = i * cosine + (w * b + z * a - x * c)
-    new[6] = z * cosine + (w * c + x * b - i * a)
+    w, x, i, z = solid.attitude_of(y)
+    attitude = (
+        w * cosine - (x * a + i * b + z * c),
+        x * cosine + (w * a + i * c - z * b),
+        i * cosine + (w * b + z * a - x * c),
+        z * cosine + (w * c + x * b - i * a),
+    )
+    solid.set_attitude(new, attitude)
     normalise(new)
     rows = rotation(new)
     omega = scaled(turned[1], e)
     # the edge stays where it is
     moved = to_world(rows, p)
-    new[0], new[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
-    new[2] = -moved[2]
-    new[7], new[8], new[9] = to_world(rows, cross(p, omega))
-    new[10], new[11], new[12] = omega
+    solid.set_place(new, s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1])
+    new[solid.HEIGHT] = -moved[2]
+    solid.set_velocity(new, to_world(rows, cross(p, omega)))
+    solid.set_spin(new, omega)
     new[solid.FRICTION] = y[solid.FRICTION]
-
-
-@kernel
-def end_forces(body, tau, s):
-    """Fill s.lam with the forces at the ends of the edge in the state s.new, at ``tau`` in the interval."""
-    rows, omega = rotation(s.new), solid.omega_of(s.new)
-    weight = to_body(rows, forces.effective_gravity_at(s.field, tau))
-    i, j = s.closed[0], s.closed[1]
-    alpha, force, e = forces.hinge_acceleration(body, rows, omega, weight, i, j, s)
-    forces.split_force(body, rows, omega, alpha, force, e, s)
+    return rows

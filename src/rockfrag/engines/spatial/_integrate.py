@@ -20,6 +20,7 @@ from rockfrag.engines.pure_rocking.kernels.roots import narrowed
 from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _hinge as hinge
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _step as step
 from rockfrag.engines.spatial import _stepping as stepping
@@ -44,6 +45,9 @@ FORCED, NEXT_TO_FLAT = 1e-6, 1e-3
 BRIEF = 1e-6
 # how many contacts take part in an impact at least: in a landing, and in one that no collision brings about
 LANDING, NO_COLLISION = 0, 1
+# margins at which an instant is known: of gaps [m]; of forces [N/kg] and slips [m/s], which is less than what is
+# not seen of forces (LEAST_FORCE), and 1e-5 of the slip that counts as ended (AT_REST)
+CLOSED, UNSEEN = 1e-12, 1e-9
 # contact events in one interval after which the velocity that closes contacts is doubled
 MANY = 40
 # steps in one interval after which errors of COARSE [m, m/s, rad/s] are allowed to what slides: slip that hardly
@@ -84,7 +88,7 @@ COLUMNS = 17
 TURNED, COUNT, FIRST, SECOND = range(solid.WORK, COLUMNS)
 """Columns of a history: y[0:13], turn about the vertical, number of closed points, and the first two of them."""
 
-RESTS = 99  # stands for the number of closed points of a body at rest, which are not looked at
+RESTS = 99  # number of closed points that a history has of a body at rest
 
 
 @kernel
@@ -221,11 +225,11 @@ def start_rolling(body, y, towards_x, towards_y, gravity, s):
     """
     size = max(algebra.norm(towards_x, towards_y), algebra.TINY)
     u = (towards_x / size, towards_y / size)
-    before = (y[0], y[1], y[2])
+    before = (y[solid.PLACE], y[solid.PLACE + 1], y[solid.HEIGHT])
     tilt_about(body, y, u, RIM_START)
-    lifted = (gravity[2] + s.field[forces.GRAVITY]) * (y[2] - before[2])
-    moved = gravity[0] * (y[0] - before[0]) + gravity[1] * (y[1] - before[1])
-    y[solid.WORK] += moved + lifted
+    after = (y[solid.PLACE], y[solid.PLACE + 1], y[solid.HEIGHT])
+    moving = (gravity[0], gravity[1], gravity[2] + s.field[forces.GRAVITY])
+    y[solid.WORK] += algebra.dot(moving, algebra.minus(after, before))
     s.closed[0], s.slides[0] = solid.rim_contact(body), forces.STICKS
     s.count, s.rests = 1, 0
     modes.settle(body, y, s)
@@ -247,8 +251,8 @@ def tilt_about(body, y, u, tilt):
     before = solid.position_of_base(y, algebra.rotation(y), p)
     algebra.turn(y, (-tilt * u[1], tilt * u[0], 0.0))
     after = solid.position_of_base(y, algebra.rotation(y), p)
-    y[0] += before[0] - after[0]
-    y[1] += before[1] - after[1]
+    y[solid.PLACE] += before[0] - after[0]
+    y[solid.PLACE + 1] += before[1] - after[1]
 
 
 @kernel
@@ -258,19 +262,19 @@ def pass_flat(body, y, s):
     Its contact turns by a fixed angle, ``body.pass_turn`` rolling and ``slide_turn`` sliding [rad], and the tilt
     rises as it sank. A body whose tilt rises already is left as it is.
     """
+    gravity = s.field[forces.GRAVITY]
     up = algebra.rotation(y)[2]
     from_here, tilt = solid.rim_direction(up)
     # rate of the vertical as the body sees it, towards the upright while the body sinks
     sinking = algebra.cross(up, solid.omega_of(y))
     if sinking[0] * up[0] + sinking[1] * up[1] >= 0.0:
         return
-    gravity = s.field[forces.GRAVITY]
     before = solid.energy(body, y, gravity)
     slides = s.slides[0] == forces.SLIDES
     angle = body.slide_turn if slides else body.pass_turn
     goes_back = sinking[0] * from_here[1] - sinking[1] * from_here[0] < 0
     if goes_back:
-        # the contact goes on round as it does already
+        # on the way in which the contact goes round already
         angle = -angle
     sine, cosine = sin_cos(angle)
     to_there = (
@@ -281,12 +285,7 @@ def pass_flat(body, y, s):
     tilt_about(body, y, to_there, max(2 * FLAT_PASS, tilt))
     rise(body, y, to_there, algebra.norm(sinking[0], sinking[1]), s)
     # a base that is not symmetrical would gain in the new direction
-    solid.pay(
-        body,
-        y,
-        solid.energy(body, y, s.field[forces.GRAVITY]) - before,
-        s.field[forces.GRAVITY],
-    )
+    solid.pay(body, y, solid.energy(body, y, gravity) - before)
 
 
 @kernel
@@ -328,7 +327,8 @@ def guess_landing(body, h, y, below, s):
     """Time in a step [s] at which the point lands that is lowest after it; its gap is ``below``, negative [m].
 
     It is the last zero of the cubic through gaps and velocities at both ends, above + fall x + square x² + cube
-    x³, x the part of the step (``docs/space.md``, equation 23), by Newton's method.
+    x³, x the part of the step (``docs/space.md``, equation 23), by Newton's method; about an edge then that of
+    the series of the angle.
     """
     i = lowest_open(body, s.new, s)
     above, fall = solid.gap_of(body, y, algebra.rotation(y), i), h * rising(body, y, i)
@@ -340,6 +340,8 @@ def guess_landing(body, h, y, below, s):
     for _ in range(5):
         value = above + part * (fall + part * (square + part * cube))
         part -= value / (fall + part * (2.0 * square + part * 3.0 * cube))
+    if step.kind_of_step(body, s) == forces.HINGE:
+        part = hinge.landing(body, y, i, part, 0.5 * modes.TOUCH, s)
     return h * part
 
 
@@ -348,30 +350,36 @@ def locate(body, tau, h, y, s):
     """Find the first instant in a step h at which a margin vanishes; return it, from the beginning [s], and which.
 
     s.new gets the state there. False position (Illinois) between the last instant that is admissible and the first
-    that is not takes whole steps from y; a landing begins with :func:`guess_landing` and ends with a step of
-    Newton's.
+    that is not takes whole steps from y, where both margins are of one kind; else the bracket is halved. A landing
+    begins with :func:`guess_landing` and ends with a step of Newton's.
     """
     below, what = step.margin(body, s.new, s)
     middle = guess_landing(body, h, y, below, s) if what == modes.LANDS else 0.0
     forces.rates(body, tau, y, s.slopes[0], s)
-    above, at_once = step.margin(body, y, s)
+    above, what_above = step.margin(body, y, s)
     if above <= 0:
         for i in range(solid.SIZE):
             s.new[i] = y[i]
-        return 0.0, at_once
-    bracket, below_what = (0.0, above, h, below, 0), what
+        return 0.0, what_above
+    bracket, what_below = (0.0, above, h, below, 0), what
     for _ in range(80):
         low, above, high, below, _ = bracket
-        if not low < middle < high:
+        # margins of two kinds have no chord in common
+        alike = what_above == what_below
+        if alike and not low < middle < high:
             middle = (low * below - high * above) / (below - above)
         if not low < middle < high:
             middle = 0.5 * (low + high)
+            bracket = (low, above, high, below, 0)
         step.attempt(body, tau, middle, y, s)
         value, what = step.margin(body, s.new, s)
         at, middle = middle, 0.0
-        below_what = what if value < 0.0 else below_what
+        if value < 0.0:
+            what_below = what
+        else:
+            what_above = what
         rate = 0.0
-        if what == modes.LANDS and below_what == modes.LANDS:
+        if what == modes.LANDS and what_below == modes.LANDS:
             rate = rising(body, s.new, lowest_open(body, s.new, s))
         if rate < 0.0:
             # a last step of Newton's, so short that the rates at its beginning suffice
@@ -381,7 +389,8 @@ def locate(body, tau, h, y, s):
                 step.go_on_by(body, at, rest, tau, y, s)
                 return at + rest, what
         bracket = narrowed(bracket, at, value)
-        if abs(value) < 1e-12:
+        is_gap = what in (modes.LANDS, modes.TIE_TURNS, modes.TIE_BREAKS)
+        if abs(value) < (CLOSED if is_gap else UNSEEN):
             return at, what
         if bracket[2] - bracket[0] < 1e-14:
             break
@@ -431,19 +440,14 @@ def tip_over_rim(body, y, towards_x, towards_y, sliding, gravity, s):
     ``sliding`` is STICKS or SLIDES; a body that slides keeps its velocities. Energy that this gains is paid back.
     """
     omega = solid.omega_of(y)
-    velocity = (y[7], y[8], y[9])
+    velocity = solid.centre_velocity(y)
     before = solid.balance(body, y, s.field[forces.GRAVITY])
     start_rolling(body, y, towards_x, towards_y, gravity, s)
     if sliding == forces.SLIDES:
         s.slides[0] = forces.SLIDES
-        y[10], y[11], y[12] = omega
-        y[7], y[8], y[9] = velocity
-    solid.pay(
-        body,
-        y,
-        solid.balance(body, y, s.field[forces.GRAVITY]) - before,
-        s.field[forces.GRAVITY],
-    )
+        solid.set_spin(y, omega)
+        solid.set_velocity(y, velocity)
+    solid.pay(body, y, solid.balance(body, y, s.field[forces.GRAVITY]) - before)
 
 
 @kernel
@@ -489,15 +493,14 @@ def note_soon(s, peaks, k, scale, dt):
 
 @kernel
 def happen(body, what, tau, y, cut, stuck, s):
-    """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J/kg].
+    """Change velocities and mode by what ended a step; return the energy lost [J/kg].
 
     ``what`` is one of modes.LANDS and those behind it, and y the state then. First it takes effect, then the mode
     that goes on is chosen. ``stuck`` is how many steps in a row had hardly any length: then one contact is changed
     outright.
     """
-    g = s.field[forces.GRAVITY]
     gravity = forces.effective_gravity_at(s.field, tau)
-    before = solid.balance(body, y, g)
+    before = solid.balance(body, y, s.field[forces.GRAVITY])
     if what == modes.LANDS:
         land(body, y, gravity, cut, s)
     elif what == modes.SLIP_ENDS:
@@ -512,10 +515,10 @@ def happen(body, what, tau, y, cut, stuck, s):
         tip_over_rim(body, y, towards_x, towards_y, forces.SLIDES, gravity, s)
     elif stuck > SOON_STUCK and what in (modes.OPENS, modes.LEAVES_CONE):
         modes.insist(body, what, s)
-    elif forces.kind_of(s) != forces.REST and not modes.choose_mode(body, tau, y, s):
-        go_on_without_forces(body, tau, y, gravity, s)
+    elif forces.kind_of(s) != forces.REST:
+        follow(body, tau, y, gravity, s)
     rim_instead_of_feet(body, y, gravity, s)
-    return before - solid.balance(body, y, g)
+    return before - solid.balance(body, y, s.field[forces.GRAVITY])
 
 
 @kernel
@@ -536,11 +539,13 @@ def land(body, y, gravity, cut, s):
 
 
 @kernel
-def go_on_without_forces(body, tau, y, gravity, s):
-    """Choose a mode where contact forces do not exist (Painlevé): after an impact, or jammed.
+def follow(body, tau, y, gravity, s):
+    """Choose the mode that follows; where contact forces do not exist (Painlevé), after an impact, or jammed.
 
     What slides has an impact without a collision; if there is no mode after it either, what is closed sticks.
     """
+    if modes.choose_mode(body, tau, y, s):
+        return
     s.counters[modes.JAMS] += 1
     free = slides_any(s)
     if free:
@@ -551,15 +556,11 @@ def go_on_without_forces(body, tau, y, gravity, s):
 
 
 @kernel
-def note_peaks(body, y, start, out):
-    """Keep the largest tilt and speed, and the walk since ``start`` (x, y) [m]; return the cosine of the tilt.
-
-    The ratio of the tilt is over that of balance, at which the centre of mass is over the outline of the base.
-    """
-    rows = algebra.rotation(y)
+def note_peaks(body, y, rows, out):
+    """Keep the largest tilt and speed."""
     up = rows[2]
     sine = algebra.norm(up[0], up[1])
-    if sine > 1e-9:
+    if sine > modes.FLAT:
         # tangent of the tilt at which the centre of mass is over the base's outline in the direction of the tilt
         critical = reach_towards_tilt(body, rows) / body.height
         # x / (1 + x²) < arc tangent of x < x, so most states need no arc tangent
@@ -569,11 +570,16 @@ def note_peaks(body, y, start, out):
             out[PEAK_TILT] = max(out[PEAK_TILT], tilt)
         elif sine > out[PEAK_TILT] * up[2]:
             out[PEAK_TILT] = max(out[PEAK_TILT], atan2(sine, up[2]))
-    speed = math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
+    speed = algebra.length(solid.omega_of(y))
     out[PEAK_SPEED] = max(out[PEAK_SPEED], speed)
-    foot = solid.position_of_base(y, rows, (0.0, 0.0, -body.height))
+
+
+@kernel
+def note_walk(body, y, start, out):
+    """Keep how far the base's point below the centre of mass is from where it was at first."""
+    below = (0.0, 0.0, -body.height)
+    foot = solid.position_of_base(y, algebra.rotation(y), below)
     out[WALK_X], out[WALK_Y] = foot[0] - start[0], foot[1] - start[1]
-    return up[2]
 
 
 @kernel
@@ -607,23 +613,39 @@ def reach_towards_tilt(body, rows):
 
 @kernel
 def heading(y):
-    """Angle by which a body is turned about the vertical [rad]: the twist of its quaternion about that axis."""
-    real, upright = y[solid.ATTITUDE], y[solid.ATTITUDE + 3]
-    return 2.0 * atan2(upright, real)
+    """Twist of a body's quaternion about the vertical: cosine and sine of half the angle, but for their size."""
+    return y[solid.ATTITUDE], y[solid.ATTITUDE + 3]
+
+
+@kernel
+def turn_since(before, y):
+    """Angle by which a body has turned about the vertical since a heading, less than half a turn [rad]."""
+    now = heading(y)
+    cosine = before[0] * now[0] + before[1] * now[1]
+    sine = before[0] * now[1] - before[1] * now[0]
+    if cosine < 0.0:
+        # the other quaternion of the same attitude
+        cosine, sine = -cosine, -sine
+    return 2.0 * atan2(sine, cosine)
 
 
 @kernel
 def note_turn(y, before, out):
-    """Add to out[TURN] what the heading has changed by since ``before`` [rad], the short way; return it."""
+    """Add the turn about the vertical since a heading if it is large; return the heading from which more counts.
+
+    An arc tangent is dear, and few bodies turn far.
+    """
     now = heading(y)
-    change = now - before
-    change -= 2 * math.pi * math.floor(change / (2 * math.pi) + 0.5)
-    out[TURN] += change
-    return now
+    cosine = before[0] * now[0] + before[1] * now[1]
+    sine = before[0] * now[1] - before[1] * now[0]
+    if 2.0 * abs(sine) > abs(cosine):
+        out[TURN] += turn_since(before, y)
+        return now
+    return before
 
 
 @kernel
-def fall_is_certain(body, y, peaks, scale, g):
+def fall_is_certain(body, y, rows, peaks, scale, g):
     """Whether the body leans further over its furthest point than the steepest effective gravity to come.
 
     It has to tilt further, too (``docs/space.md``, equation 25). ``peaks`` are the largest horizontal and vertical
@@ -632,7 +654,6 @@ def fall_is_certain(body, y, peaks, scale, g):
     if body.constraints > 0:
         # what holds it may catch it
         return False
-    rows = algebra.rotation(y)
     up = rows[2]
     sine = algebra.norm(up[0], up[1])
     # sine and cosine of the tilt beyond, times the same length
@@ -655,28 +676,25 @@ def note_fall(y, s, time, out):
     rows = algebra.rotation(y)
     out[FELL], out[CERTAIN_TIME] = 1.0, time
     out[FALL_AZIMUTH] = atan2(rows[1][2], rows[0][2])
-    # what it falls over is on the ground: contacts with walls are left out
-    first, second = -1, -1
-    for k in range(s.count):
-        i = s.closed[k]
-        if i < solid.WALLS and first < 0:
-            first = i
-        elif i < solid.WALLS and second < 0:
-            second = i
-    out[FALL_FIRST], out[FALL_SECOND] = first, second
+    out[FALL_FIRST] = out[FALL_SECOND] = -1.0
+    for k in range(s.count - 1, -1, -1):
+        if s.closed[k] < solid.WALLS:
+            out[FALL_SECOND] = out[FALL_FIRST]
+            out[FALL_FIRST] = s.closed[k]
 
 
 @kernel
-def record(history, k, y, out, s):
+def record(history, k, y, before, out, s):
     """Write sample k of the history, shape (m, COLUMNS), if there is room; of a body at rest RESTS contacts.
 
-    Where fewer than two contacts are closed, the last columns hold what was there before.
+    ``before`` is the heading from which the turn counts on. Where fewer than two contacts are closed, the last
+    columns hold what was there before.
     """
     if k >= history.shape[0]:
         return
     for i in range(solid.WORK):
         history[k, i] = y[i]
-    history[k, TURNED] = out[TURN]
+    history[k, TURNED] = out[TURN] + turn_since(before, y)
     history[k, COUNT] = RESTS if s.rests else s.count
     history[k, FIRST] = s.closed[0]
     history[k, SECOND] = s.closed[1]
@@ -684,30 +702,28 @@ def record(history, k, y, out, s):
 
 @kernel
 def small_rim(body, y, tau, cut, s):
-    """Let a round body lie flat whose wobble is below the cut-off while the ground would carry it flat.
+    """Lay a round body flat whose wobble is below the cut-off if the ground carries it; return the loss [J/kg].
 
     One that slides and cannot tip by friction goes on flat, and slides on its face.
     """
-    gravity = forces.effective_gravity_at(s.field, tau)
     rows = algebra.rotation(y)
-    if s.count != 1:
-        return
     small = LEAST_WOBBLE * cut * body.barrier
     # of the motion that tilts the body, what it would lose by lying down [J/kg]
-    tilting = 0.5 * (body.inertia[0, 0] * y[10] ** 2 + body.inertia[1, 1] * y[11] ** 2)
+    a, b, _ = solid.omega_of(y)
+    tilting = 0.5 * (body.inertia[0, 0] * a**2 + body.inertia[1, 1] * b**2)
     lift = s.field[forces.GRAVITY] * body.rim * algebra.norm(rows[2][0], rows[2][1])
-    if tilting + 0.5 * y[9] ** 2 + lift >= small:
-        return
-    if (
-        modes.rest_margin(body, y, rows, gravity, s) >= 0
-        and solid.energy(body, y, s.field[forces.GRAVITY]) < small
-    ):
+    if tilting + 0.5 * y[solid.UPWARD] ** 2 + lift >= small:
+        return 0.0
+    before = solid.energy(body, y, s.field[forces.GRAVITY])
+    gravity = forces.effective_gravity_at(s.field, tau)
+    if modes.rest_margin(body, y, rows, gravity, s) >= 0 and before < small:
         modes.come_to_rest(body, y, s)
     elif s.slides[0] == forces.SLIDES and body.kinetic * body.height < body.rim:
-        y[9] = y[10] = y[11] = 0.0
+        y[solid.UPWARD] = y[solid.SPIN] = y[solid.SPIN + 1] = 0.0
         modes.lay_flat(body, y)
         if not modes.choose_mode(body, tau, y, s):
             modes.jam(body, y, s)
+    return before - solid.energy(body, y, s.field[forces.GRAVITY])
 
 
 @kernel
@@ -726,7 +742,9 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     """
     g = s.field[forces.GRAVITY]
     step.begin(body, tau, y, s)
-    h = min(next_step, dt - tau)
+    # equal steps to the end of the interval, where the ground's acceleration has a kink
+    h = (dt - tau) / math.ceil((dt - tau) / next_step)
+    most = 5.0
     while True:
         error = step.attempt(body, tau, h, y, s)
         out[STEPS] += 1
@@ -739,9 +757,12 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
                 continue
             break
         h *= max(0.2, 0.9 * slow_power(tolerance / error))
-    grow = (
-        5.0 if error == 0.0 else min(5.0, max(0.3, 0.9 * slow_power(tolerance / error)))
-    )
+        # else the next step would be rejected too
+        most = 1.0
+    grow = most
+    if error > 1e-4 * tolerance:
+        # of less the growth is five times in any case
+        grow = min(most, max(0.3, 0.9 * slow_power(tolerance / error)))
     ahead = h * grow
     if least < 0:
         h, what = locate(body, tau, h, y, s)
@@ -752,7 +773,6 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         note_loss(solid.balance(body, y, g) - solid.balance(body, s.new, g), out)
     for i in range(solid.SIZE):
         y[i] = s.new[i]
-    algebra.normalise(y)
     if body.constraints > 0:
         note_forces(body, y, s)
     if what != modes.NOTHING:
@@ -764,7 +784,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         modes.settle(body, y, s)
         if body.walls:
             # contacts that are wedged may be raised
-            solid.pay(body, y, solid.energy(body, y, g) - before, g)
+            solid.pay(body, y, solid.energy(body, y, g) - before)
         note_loss(before - solid.energy(body, y, g), out)
     # whether the rates at the end of a step are those at the beginning of the next
     sticks = forces.kind_of(s) in (forces.FLIGHT, forces.PIVOT, forces.HINGE)
@@ -784,21 +804,22 @@ def note_loss(loss, out):
 @kernel
 def look_after_rim(body, y, tau, cut, ahead, s, out):
     """Pass a rim through flat, or let it rest, after a step; return the next step [s], else ``ahead``."""
+    if s.count != 1:
+        return ahead
     up = algebra.rotation(y)[2]
+    if algebra.norm(up[0], up[1]) >= FLAT_PASS:
+        note_loss(small_rim(body, y, tau, cut, s), out)
+        return ahead
     before = solid.energy(body, y, s.field[forces.GRAVITY])
-    passes = s.count == 1 and algebra.norm(up[0], up[1]) < FLAT_PASS
-    if passes:
-        s.goes_on = 0
-        pass_flat(body, y, s)
-    else:
-        small_rim(body, y, tau, cut, s)
+    s.goes_on = 0
+    pass_flat(body, y, s)
     note_loss(before - solid.energy(body, y, s.field[forces.GRAVITY]), out)
-    return AFTER_PASS if passes else ahead
+    return AFTER_PASS
 
 
 @entry_kernel
 def integrate_scales(
-    body,
+    bodies,
     acceleration,
     peaks,
     scales,
@@ -811,19 +832,21 @@ def integrate_scales(
     history,
     outs,
     counts,
-    s,
+    cases,
 ):
     """Integrate one analysis after the other, at each of several scales, as :func:`integrate` does.
 
     Parameters
     ----------
-    body, acceleration, dt, g, extra, tolerance, cut, history, s : as there
+    bodies, cases : records of ``body`` and ``s`` there, in arrays of one, which are quicker to pass, shape (1,)
+    acceleration, dt, g, extra, tolerance, cut, history : as there
     peaks : takes what is asked for there, shape (n, 4)
     scales : of the motion, shape (scales,) [-]
     ends : states to begin with, and then those at the end, shape (scales, SIZE)
     outs : takes the outcomes, shape (scales, OUTCOME)
     counts : takes the counters, shape (scales, COUNTERS)
     """
+    body, s = bodies[0], cases[0]
     fill_peaks(acceleration, peaks)
     for k in range(scales.shape[0]):
         integrate(
@@ -927,18 +950,19 @@ def integrate(
         skips = s.rests == 1 and s.bonded == 0 and k + WINDOW <= last
         if skips and rests_on(body, peaks, k, scale, g):
             for _ in range(WINDOW):
-                record(history, k, y, out, s)
+                record(history, k, y, before, out, s)
                 k += 1
             continue
         set_field(s.field, acceleration, k, scale, dt, g)
         s.began = k * dt
         note_soon(s, peaks, k, scale, dt)
-        record(history, k, y, out, s)
-        free = body.constraints == 0 and solid.energy(body, y, g) < body.barrier
-        still = still + 1 if k > last and hardly_moves(body, y, cut) else 0
-        if k > last and (s.rests == 1 or free or still > STILL):
-            # on a ground at rest it stands, has too little energy left to fall, or leans and does not move
-            break
+        record(history, k, y, before, out, s)
+        if k > last:
+            free = body.constraints == 0 and solid.energy(body, y, g) < body.barrier
+            still = still + 1 if hardly_moves(body, y, cut) else 0
+            if s.rests == 1 or free or still > STILL:
+                # on a ground at rest it stands, has too little energy left to fall, or leans and does not move
+                break
         if s.bonded:
             note_bond(body, y, 0.0, s)
         tau = 0.0
@@ -996,18 +1020,24 @@ def integrate(
                 s.counters[modes.UNSOLVED] += 1
                 note_fall(y, s, (k + 1) * dt, out)
                 break
-            up = note_peaks(body, y, start, out)
-            before = note_turn(y, before, out)
-            if up <= 0.0 or fall_is_certain(body, y, peaks[min(k, last)], scale, g):
+            rows = algebra.rotation(y)
+            note_peaks(body, y, rows, out)
+            soon = peaks[min(k, last)]
+            if rows[2][2] <= 0.0 or fall_is_certain(body, y, rows, soon, scale, g):
                 note_fall(y, s, (k + 1) * dt, out)
                 break
+        if solid.is_known(y):
+            note_walk(body, y, start, out)
+            before = note_turn(y, before, out)
         if out[FELL] > 0 or lost_track > PATIENCE or out[STEPS] > MOST_STEPS:
             break
         if many < AGAIN:
             patience = RESTLESS
         k += 1
     if out[FELL] == 0.0:
-        record(history, k, y, out, s)
+        record(history, k, y, before, out, s)
+    if solid.is_known(y):
+        out[TURN] += turn_since(before, y)
     out[BEYOND] = s.beyond
     out[LEANS] = out[FELL] == 0.0 and body.constraints > 0 and is_beyond(body, y)
     for i in range(solid.HOLDERS):
@@ -1099,7 +1129,7 @@ def give_up(body, tau, y, s):
     s.counters[modes.UNSOLVED] += 1
     up = algebra.rotation(y)[2]
     if body.rim > 0 and algebra.norm(up[0], up[1]) < NEXT_TO_FLAT:
-        y[9] = y[10] = y[11] = 0.0
+        y[solid.UPWARD] = y[solid.SPIN] = y[solid.SPIN + 1] = 0.0
         modes.lay_flat(body, y)
     if not modes.choose_mode(body, tau, y, s):
         modes.jam(body, y, s)

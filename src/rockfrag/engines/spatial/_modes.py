@@ -188,20 +188,9 @@ def along_wall(body, y, rows, which, i, j, s):
 
 @kernel
 def kind_of_mode(s):
-    """Return PIVOT or HINGE if one point or two of the ground stick and nothing else holds the body, else GENERAL.
-
-    Unlike ``_forces.kind_of`` it knows no other kinds: it chooses between the closed forms of :func:`hold_still`
-    and the linear system of :func:`hold`.
-    """
-    if forces.at_wall(s):
-        return forces.GENERAL
-    first_sticks = s.slides[0] == forces.STICKS
-    if s.rests == 0 and s.count == 1 and first_sticks:
-        return forces.PIVOT
-    second_sticks = s.slides[1] == forces.STICKS
-    if s.rests == 0 and s.count == 2 and first_sticks and second_sticks:
-        return forces.HINGE
-    return forces.GENERAL
+    """PIVOT or HINGE of a mode in which nothing is closed but one point or two that stick, or else GENERAL."""
+    kind = forces.kind_of(s)
+    return kind if kind in (forces.PIVOT, forces.HINGE) else forces.GENERAL
 
 
 @kernel
@@ -212,7 +201,7 @@ def hold_still(body, y, rows, kind, s):
     the centre of mass but for rotation. An edge may then have only a velocity along itself, that of both ends, so
     that any tolerance of :func:`_forces.stop_edge` does.
     """
-    velocity = algebra.to_body(rows, (y[7], y[8], y[9]))
+    velocity = algebra.to_body(rows, solid.centre_velocity(y))
     momentum = algebra.times(body.inertia, solid.omega_of(y))
     i = s.closed[0]
     if kind == forces.PIVOT:
@@ -222,9 +211,8 @@ def hold_still(body, y, rows, kind, s):
             body, rows[2], i, s.closed[1], velocity, velocity, momentum, 0.0
         )
     pushed = algebra.to_world(rows, push)
-    for k in range(3):
-        y[7 + k] += pushed[k]
-        y[10 + k] = turn[k]
+    solid.set_velocity(y, algebra.plus(solid.centre_velocity(y), pushed))
+    solid.set_spin(y, turn)
 
 
 @kernel
@@ -258,7 +246,7 @@ def impact(body, y, gravity, least, s):
     leave slowly.
     """
     rows = algebra.rotation(y)
-    before = (y[7], y[8], y[9])
+    before = solid.centre_velocity(y)
     n = touching(body, y, rows, s)
     momentum = stick.fill_velocities(body, y, rows, n, s)
     if picks_wall(n, s):
@@ -291,14 +279,14 @@ def impact_at_wall(body, y, rows, gravity, n, least, s):
     ``n`` contacts are in s.which. More may touch than these: a round at a time, the one that would be passed
     through fastest takes the place of the one that is least needed.
     """
-    came = (y[7], y[8], y[9], y[10], y[11], y[12])
+    came = (solid.centre_velocity(y), solid.omega_of(y))
     before = solid.energy(body, y, s.field[forces.GRAVITY])
     found, solutions = -1, 0
     for _ in range(TAKEN_IN):
         found, solutions = bounce_without_gain(body, y, rows, n, least, came, before, s)
         if found < 0:
             break
-        load = algebra.to_body(rows, (y[7], y[8], y[9]))
+        load = algebra.to_body(rows, solid.centre_velocity(y))
         i = missed(body, y, rows, n, (load, solid.omega_of(y)), MISSED, False, s)
         at = least_needed(n, found, s)
         if i < 0 or at < 0:
@@ -325,13 +313,13 @@ def bounce_without_gain(body, y, rows, n, least, came, before, s):
     """Solve an impact at walls; return the set that pushes and how many would do.
 
     Newton's ratio together with friction may gain energy. The ratios of all walls are halved until they do not.
-    ``came`` are the velocities before, y[7:13] [m/s, rad/s], which each trial begins with, and ``before`` the
-    energy [J/kg].
+    ``came`` are the velocity [m/s] and the angular one [rad/s] before, which each trial begins with, and
+    ``before`` the energy [J/kg].
     """
     part, found, solutions = 1.0, -1, 0
     for _ in range(RATIO_HALVINGS):
-        for k in range(6):
-            y[solid.VELOCITY + k] = came[k]
+        solid.set_velocity(y, came[0])
+        solid.set_spin(y, came[1])
         found, solutions = bounce(body, y, rows, n, least, part, s)
         if found < 0:
             break
@@ -742,7 +730,8 @@ def carried_flat(body, tau, y, rows, gravity, s):
     if body.kinetic * body.height + off < body.rim:
         return True
     return (
-        algebra.norm(y[7], y[8]) < AT_REST and topple_margin(body, rows, gravity) >= 0
+        algebra.norm(y[solid.VELOCITY], y[solid.VELOCITY + 1]) < AT_REST
+        and topple_margin(body, rows, gravity) >= 0
     )
 
 
@@ -819,8 +808,9 @@ def edge_margin(body, y, rows, gravity, i, j):
     length = algebra.norm(q[0] - p[0], q[1] - p[1])
     # outwards in the plan; how far the edge lies out there, and what acts that way
     normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
-    reach = normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
-    outward, height = normal[0] * gravity[0] + normal[1] * gravity[1], y[2]
+    x, z, height = y[solid.PLACE], y[solid.PLACE + 1], y[solid.HEIGHT]
+    reach = normal[0] * (p[0] - x) + normal[1] * (p[1] - z)
+    outward = normal[0] * gravity[0] + normal[1] * gravity[1]
     return -(height * outward + reach * gravity[2]) / height
 
 
@@ -837,8 +827,8 @@ def count_touching(body, y, rows):
 def come_to_rest(body, y, s):
     """Let the body rest where it is: no velocity, flat, and the mode in ``s``."""
     s.count, s.rests = 0, 1
-    for k in range(solid.VELOCITY, solid.WORK):
-        y[k] = 0.0
+    solid.set_velocity(y, (0.0, 0.0, 0.0))
+    solid.set_spin(y, (0.0, 0.0, 0.0))
     lay_flat(body, y)
 
 
@@ -892,8 +882,8 @@ def choose_mode(body, tau, y, s):
 @kernel
 def may_rest(body, y, rows, gravity, s):
     """Whether a body hardly moves, three points touch, and the ground carries it at rest."""
-    spin = body.height * math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
-    still = math.sqrt(y[7] ** 2 + y[8] ** 2 + y[9] ** 2) + spin < STILL
+    spin = body.height * algebra.length(solid.omega_of(y))
+    still = algebra.length(solid.centre_velocity(y)) + spin < STILL
     stands = still and count_touching(body, y, rows) >= 3
     return stands and rest_margin(body, y, rows, gravity, s) >= 0
 
@@ -905,7 +895,8 @@ def stay_on_face(body, tau, y, rows, gravity, s):
     Points that slip by less than twice AT_REST may stick, if the ground carries the body at rest. A polygon that
     neither slips nor begins to is left to the forces of its contacts.
     """
-    slip = algebra.norm(y[7], y[8]) + body.furthest * abs(y[12])
+    slip = algebra.norm(y[solid.VELOCITY], y[solid.VELOCITY + 1])
+    slip += body.furthest * abs(y[solid.SPIN + 2])
     stands = rest_margin(body, y, rows, gravity, s) >= 0
     slides = slip >= 2 * AT_REST or pulled_off(body, gravity) or body.rim > 0
     if not slides or not carried_flat(body, tau, y, rows, gravity, s):
@@ -1106,15 +1097,15 @@ def settle(body, y, s):
         omega = solid.omega_of(y)
         if kind == forces.HINGE:
             q = solid.arm(body, rows[2], s.closed[1])
-            edge = algebra.minus(q, p)
-            part = algebra.dot(edge, omega) / algebra.dot(edge, edge)
-            omega = algebra.scaled(part, edge)
-            y[10], y[11], y[12] = omega
+            e = algebra.minus(q, p)
+            omega = algebra.scaled(algebra.dot(e, omega) / algebra.dot(e, e), e)
+            solid.set_spin(y, omega)
         moved = algebra.to_world(rows, p)
-        y[2] = -moved[2]
+        y[solid.HEIGHT] = -moved[2]
         if i != solid.rim_contact(body):
-            y[0], y[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
-        y[7], y[8], y[9] = algebra.to_world(rows, algebra.cross(p, omega))
+            x, z = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
+            solid.set_place(y, x, z)
+        solid.set_velocity(y, algebra.to_world(rows, algebra.cross(p, omega)))
     elif kind in (forces.GENERAL, forces.SLIDER):
         close_gaps(body, y, rows, s)
         hold(body, y, algebra.rotation(y), s)
@@ -1137,7 +1128,7 @@ def close_gaps(body, y, rows, s):
     forces.fill_delassus(body, rows, s.closed, n, s.delassus)
     first = solid.gap(body, y, rows[2], s.closed[0])
     if n == 1:
-        y[2] -= first
+        y[solid.HEIGHT] -= first
         return
     second = solid.gap(body, y, rows[2], s.closed[1])
     # vertical displacement at each by a vertical impulse at each: row 3 k + 2 is the vertical at point k
@@ -1192,7 +1183,7 @@ def shift_at(body, y, rows, i, size):
 def lift_at(body, y, rows, i, size):
     """Displace the body as a small vertical impulse at point i of the base would: see :func:`shift_at`."""
     p = solid.arm(body, rows[2], i)
-    y[2] += size
+    y[solid.HEIGHT] += size
     algebra.turn(
         y, algebra.scaled(size, algebra.times(body.inverse, algebra.cross(p, rows[2])))
     )

@@ -32,7 +32,7 @@ from rockfrag.engines.spatial._forces import (
     tie_margin,
 )
 
-# velocity below which an open point moves down, and not by rounding alone [m/s]
+# velocity away from its surface below which an open contact approaches it, and not by rounding alone [m/s]
 DOWN = -1e-10
 ON_EDGE = 1e-12  # distance of the centre of pressure from the edge of a face that is rounding [m]
 # part of a step, times the change of velocity in it, by which a point may dip below the parabola of its velocities
@@ -88,14 +88,18 @@ def attempt(body, tau, h, y, s):
 def go_on_by(body, at, rest, tau, y, s):
     """Go on from s.new, the state at ``at`` after ``tau`` [s], by a time ``rest`` of either sign.
 
-    It is so short that the rates at the end of the step to ``at`` suffice; modes with a step of their own take it
-    anew.
+    It is so short that the rates at the end of the step to ``at`` suffice; about an edge the step is taken anew.
     """
-    if kind_of_step(body, s) != forces.GENERAL:
+    kind = kind_of_step(body, s)
+    if kind == forces.PIVOT:
+        pivot.go_on_by(body, tau + at + rest, rest, y, s)
+        return
+    if kind == forces.HINGE:
         attempt(body, tau, at + rest, y, s)
         return
     for i in range(solid.SIZE):
         s.new[i] += rest * s.slopes[STAGES - 1, i]
+    normalise(s.new)
 
 
 @kernel
@@ -112,17 +116,16 @@ def attempt_any(body, tau, h, y, s):
                     new[i] += weight * k[early, i]
         for i in range(solid.SIZE):
             new[i] = y[i] + h * new[i]
-        last = stage == STAGES - 1
-        if last:
+        if stage == STAGES - 1:
             normalise(new)
-        rates(body, tau + INSTANTS[stage] * h, new, k[stage], s, last)
+        rates(body, tau + INSTANTS[stage] * h, new, k[stage], s)
     return error_of(body, h, y, s)
 
 
 @kernel
 def error_of(body, h, y, s):
     """Largest component of the difference to the step of order 4, over its size."""
-    worst, weight = 0.0, solid.weight_of_attitude(body, y)
+    worst, weight = 0.0, solid.weight_of_attitude(body, rotation(y)[2])
     for i in range(solid.WORK):
         scale = weight if solid.ATTITUDE <= i < solid.VELOCITY else 1.0 + abs(y[i])
         worst = max(worst, abs(h * error_rate(s.slopes, i)) / scale)
@@ -146,6 +149,16 @@ def is_closed(s, i):
     for k in range(s.count):
         found = found or s.closed[k] == i
     return found
+
+
+@kernel
+def closed_on_ground(s):
+    """Set of the closed contacts with the ground, as bits."""
+    closed = 0
+    for k in range(s.count):
+        if s.closed[k] < solid.WALLS:
+            closed |= 1 << s.closed[k]
+    return closed
 
 
 @kernel
@@ -196,78 +209,55 @@ def margin(body, y, s):
     """Return the least of all that must not be negative in the state y, and what happens where it is.
 
     Gaps [m], normal forces and cones [N/kg] and slips [m/s] are looked at together: where the least is negative,
-    the step has gone too far, whatever its unit.
+    the step has gone too far, whatever its unit. An instant is looked for between margins of one kind.
     """
     rows = rotation(y)
-    least, what = open_margin(body, y, rows, s), modes.LANDS
+    least = ground_margin(body, y, rows, s)
+    if body.walls:
+        least = lesser(least, walls_margin(body, y, rows, s))
     if slides_flat(s):
-        # where the centre of pressure leaves a face, it tips
-        value = modes.pressure_margin(body, s) + ON_EDGE
-        if value < least or not body.walls:
-            least, what = value, modes.OPENS
-        value = face_slip(body, y, rows, s)
-        if value < least:
-            least, what = value, modes.SLIP_ENDS
+        # without a wall a body on its face meets nothing
+        tips = face_margin(body, s)
+        least = lesser(least, tips) if body.walls else tips
+        slip = face_slip(body, y, rows, s)
+        least = lesser(least, (slip, modes.SLIP_ENDS))
     else:
-        value, ends = closed_margin(body, y, rows, s)
-        if value < least:
-            least, what = value, ends
+        least = lesser(least, contacts_margin(body, y, rows, s))
     if body.constraints > 0:
-        value, tie = ties_margin(body, y, rows, s)
-        if value < least:
-            least, what = value, tie
-    return least, what
+        least = lesser(least, ties_margin(body, y, rows, s))
+    return least
 
 
 @kernel
-def closed_margin(body, y, rows, s):
-    """Least margin of the closed contacts, and what happens where it is negative.
-
-    A contact opens where its normal force vanishes, slides where its shear reaches its cone [N/kg], and sticks
-    where its slip ends [m/s]. Slip that has not begun yet, which is not armed, may only go forwards.
-    """
-    least, what = modes.NO_LIMIT, modes.NOTHING
-    small = LEAST_FORCE * s.field[forces.GRAVITY]
-    # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
-    passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
-    for i in range(s.count):
-        value = s.lam[i, 2] + small
-        if value < least:
-            least, what = value, modes.OPENS
-        if solid.is_smooth(body, s.closed[i]):
-            continue
-        if s.slides[i] == SLIDES:
-            value = slip_along(body, y, rows, i, s) + (
-                -modes.AT_REST if s.armed[i] else BACKWARD
-            )
-            if value < least:
-                least, what = value, modes.SLIP_ENDS
-        elif not (s.jammed or passes):
-            grip = solid.static_of(body, s.closed[i])
-            value = grip * s.lam[i, 2] - norm(s.lam[i, 0], s.lam[i, 1]) + small
-            if value < least:
-                least, what = value, modes.LEAVES_CONE
-    return least, what
+def lesser(one, other):
+    """Return the lesser of two margins, each with what it belongs to; the first if the other is no number."""
+    return other if other[0] < one[0] else one
 
 
 @kernel
-def open_margin(body, y, rows, s):
-    """Least gap of the open contacts, from half of TOUCH below the ground or the wall on [m].
+def ground_margin(body, y, rows, s):
+    """Least gap of the open points of the base, from half of TOUCH below the ground on [m].
 
-    A contact that is next to touch, but does not approach, has just parted: it is left alone until it is further
+    A point that is next to touch, but does not come down, has just parted: it is left alone until it is further
     below.
     """
     least = modes.NO_LIMIT
+    closed = closed_on_ground(s)
     turns = cross(rows[2], solid.omega_of(y))
     for i in solid.candidates(body):
-        if not is_closed(s, i):
+        if not forces.in_set(closed, i):
             p = solid.arm(body, rows[2], i)
-            value = y[2] + dot(rows[2], p) + 0.5 * modes.TOUCH
-            sinks = y[9] + dot(turns, p) < DOWN
-            if value < 0.5 * modes.TOUCH and not sinks:
+            value = y[solid.HEIGHT] + dot(rows[2], p) + 0.5 * modes.TOUCH
+            if value < 0.5 * modes.TOUCH and not y[solid.UPWARD] + dot(turns, p) < DOWN:
                 value += modes.TOUCH
-            if value < least:
-                least = value
+            least = min(least, value)
+    return least, modes.LANDS
+
+
+@kernel
+def walls_margin(body, y, rows, s):
+    """Least gap of the open corners from their walls [m], as :func:`ground_margin`."""
+    least = modes.NO_LIMIT
     for i in solid.wall_candidates(body):
         if not solid.may_meet(body, i) or is_closed(s, i):
             continue
@@ -276,8 +266,39 @@ def open_margin(body, y, rows, s):
         if value < 0.5 * modes.TOUCH and not meets:
             # what lies a little behind a wall, by the errors of steps, is pushed out as soon as it moves on
             value = max(value + modes.TOUCH, 0.5 * modes.TOUCH)
-        if value < least:
-            least = value
+        least = min(least, value)
+    return least, modes.LANDS
+
+
+@kernel
+def face_margin(body, s):
+    """Distance of the centre of pressure of a face that slides from its edge [m], over which it tips."""
+    return modes.pressure_margin(body, s) + ON_EDGE, modes.OPENS
+
+
+@kernel
+def contacts_margin(body, y, rows, s):
+    """Least margin of the closed contacts, and what happens where it is negative.
+
+    A contact opens where its normal force vanishes, slides where its shear reaches its cone [N/kg], and sticks
+    where its slip ends [m/s]. Slip that has not begun yet, which is not armed, may only go forwards.
+    """
+    small = LEAST_FORCE * s.field[forces.GRAVITY]
+    # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
+    passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
+    least = (modes.NO_LIMIT, modes.NOTHING)
+    for i in range(s.count):
+        least = lesser(least, (s.lam[i, 2] + small, modes.OPENS))
+        if solid.is_smooth(body, s.closed[i]):
+            continue
+        if s.slides[i] == SLIDES:
+            off = -modes.AT_REST if s.armed[i] else BACKWARD
+            slip = slip_along(body, y, rows, i, s) + off
+            least = lesser(least, (slip, modes.SLIP_ENDS))
+        elif not (s.jammed or passes):
+            grip = solid.static_of(body, s.closed[i]) * s.lam[i, 2]
+            left = grip - norm(s.lam[i, 0], s.lam[i, 1]) + small
+            least = lesser(least, (left, modes.LEAVES_CONE))
     return least
 
 
@@ -303,18 +324,22 @@ def ties_margin(body, y, rows, s):
 @kernel
 def dips(body, y, h, s):
     """Whether a contact that is open at both ends of a step of h may have touched inside it."""
+    if body.rim > 0 and not body.walls and is_closed(s, body.count):
+        # no other point of a rim may touch
+        return False
     new = s.new
     before, after = rotation(y), rotation(new)
     turns, turns_then = (
         cross(before[2], solid.omega_of(y)),
         cross(after[2], solid.omega_of(new)),
     )
+    closed = closed_on_ground(s)
     for i in solid.candidates(body):
-        if not is_closed(s, i):
+        if not forces.in_set(closed, i):
             p = solid.arm(body, before[2], i)
-            sinking = y[9] + dot(turns, p)
-            rising = new[9] + dot(turns_then, solid.arm(body, after[2], i))
-            if touches_between(y[2] + dot(before[2], p), sinking, rising, h):
+            sinking = y[solid.UPWARD] + dot(turns, p)
+            rising = new[solid.UPWARD] + dot(turns_then, solid.arm(body, after[2], i))
+            if touches_between(y[solid.HEIGHT] + dot(before[2], p), sinking, rising, h):
                 return True
     for i in solid.wall_candidates(body):
         if solid.may_meet(body, i) and not is_closed(s, i):

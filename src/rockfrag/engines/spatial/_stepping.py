@@ -49,7 +49,7 @@ def pass_interval(body, tau, dt, y, s):
 def loss_since(body, before, y, s):
     """Take from the velocities what energy was gained since a balance; return what was lost [J/kg]."""
     gained = solid.balance(body, y, s.field[forces.GRAVITY]) - before
-    solid.pay(body, y, gained, s.field[forces.GRAVITY])
+    solid.pay(body, y, gained)
     return before - solid.balance(body, y, s.field[forces.GRAVITY])
 
 
@@ -76,7 +76,9 @@ def take_step(body, tau, h, y, s):
     note_pushes(body, n, s)
     # of the ground's motion, in the effective gravity less gravity itself, and of ties
     y[solid.WORK] += h * (
-        load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[forces.GRAVITY]) * y[9]
+        load[0] * y[solid.VELOCITY]
+        + load[1] * y[solid.VELOCITY + 1]
+        + (load[2] + s.field[forces.GRAVITY]) * y[solid.UPWARD]
     )
     y[solid.WORK] += h * algebra.dot(forces.twist_by_ties(s), solid.omega_of(y))
     for k in range(3):

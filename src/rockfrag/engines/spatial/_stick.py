@@ -52,7 +52,7 @@ def fill_velocities(body, y, rows, n, s):
     ω over the mass, is in the body [m²/s].
     """
     omega = solid.omega_of(y)
-    velocity = to_body(rows, (y[7], y[8], y[9]))
+    velocity = to_body(rows, solid.centre_velocity(y))
     for k in range(n):
         s.load[k, 0], s.load[k, 1], s.load[k, 2] = velocity
         fill_free(body, rows, k, omega, s)
@@ -103,6 +103,7 @@ def others_stay_out(body, up, n, i, j, turn, push, small, s):
     """
     for k in range(n):
         stops = k in (i, j)
+        # what is no number does not stay out
         if not stops and not upward_speed(body, up, k, turn, push, s) >= -small:
             return False
     return True

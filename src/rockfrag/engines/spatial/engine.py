@@ -5,6 +5,7 @@ In: :class:`rockfrag.engines.contract.Cases` of single bodies with a depth. Out:
 """
 
 import math
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -20,13 +21,7 @@ from rockfrag.engines.compile.jit import compiling_alone
 from rockfrag.engines.contract import Case, Cases, Request
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _modes as modes
-from rockfrag.engines.spatial._body import (
-    ATTITUDE,
-    BOND,
-    FRICTION,
-    PLACE,
-    SPIN,
-)
+from rockfrag.engines.spatial._body import ATTITUDE, BOND, FRICTION, PLACE, SPIN
 from rockfrag.engines.spatial._forces import CASE
 from rockfrag.engines.spatial.body import (
     acting,
@@ -287,11 +282,11 @@ def run_scales(
     )
     rows = np.empty((0, kernel.COLUMNS)) if history is None else history
     extra = math.ceil(AFTER / dt)
-    case: Any = np.zeros(1, CASE)[0]
+    bodies, cases = np.asarray(body).reshape(1), np.zeros(1, CASE)
     with compiling_alone(kernel.integrate_scales):
         kernel.integrate_scales(
-            body, acceleration, peaks, scales, dt, g, extra, tolerance, CUT_OFF,
-            found.ends, rows, found.outs, found.counts, case,
+            bodies, acceleration, peaks, scales, dt, g, extra, tolerance, CUT_OFF,
+            found.ends, rows, found.outs, found.counts, cases,
         )  # fmt: skip
     return found
 
@@ -305,7 +300,7 @@ def _outcome(
         overturned=fell,
         certain_time=float(out[kernel.CERTAIN_TIME]),
         fall_direction=float(out[kernel.FALL_AZIMUTH]) if fell else math.nan,
-        fell_over=_named(body, out) if fell else "",
+        fell_over=_named(body, out.tolist()) if fell else "",
         peak_rotation=math.inf if fell else float(out[kernel.PEAK_RATIO]),
         peak_tilt=float(out[kernel.PEAK_TILT]),
         peak_velocity=float(out[kernel.PEAK_SPEED]),
@@ -323,7 +318,7 @@ def _outcome(
     )
 
 
-def _named(body: np.void, out: Floats) -> str:
+def _named(body: np.void, out: Sequence[float]) -> str:
     """Say over what a body fell: "edge 1-2", "vertex 2", "rim", or "flight" if it did not touch the ground.
 
     Vertices are numbered from 1, in the order of the base.
@@ -400,7 +395,7 @@ def _write(
     result.peak_velocity[case][:, 0] = outs[:, kernel.PEAK_SPEED]
     result.turn[case][:, 0] = outs[:, kernel.TURN]
     result.fall_direction[case][:, 0] = directions
-    for k, out in enumerate(outs):
+    for k, out in enumerate(outs.tolist()):
         result.fell_over[case][k, 0] = _named(body, out) if fell[k] else ""
         result.walk[case][k, 0] = math.hypot(out[kernel.WALK_X], out[kernel.WALK_Y])
 
@@ -408,11 +403,9 @@ def _write(
 def _write_holding(
     result: Outcomes, case: tuple[int, int], system: System, found: Found
 ) -> None:
-    """Write what held a body had to bear under a motion, at all scales, into the outcomes of all.
-
-    The kernel numbers what may act, see :func:`acting`, and a bond behind it, for a unit of mass; outcomes have a
-    row a constraint of the system, and one of its bond, in N s and N.
-    """
+    """Write what held a body had to bear under a motion, at all scales, into the outcomes of all."""
+    if not (system.constraints or system.bonds):
+        return
     rows = {row: holder for holder, row in enumerate(acting(system))}
     if system.bonds:
         rows[len(system.constraints)] = BOND

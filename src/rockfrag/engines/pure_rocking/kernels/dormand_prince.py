@@ -20,6 +20,10 @@ WEIGHTS = np.array(
         (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84),
     ]
 )
+ERRORS = np.array(
+    [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40]
+)
+"""Weights of the stages in :func:`error_rate`."""
 
 
 @inlined_kernel
