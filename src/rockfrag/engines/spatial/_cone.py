@@ -315,9 +315,11 @@ def stop_set(s, n, mask, size, largest):
 def lose_grip(s, n, mask, size, largest):
     """Give contacts that slipped before kinetic friction where Routh's path asks for it; whether there are any.
 
-    Slip that ends is rubbed by kinetic friction until it does, so a shear against it (``s.came``) is of that. A
-    shear along it is of what has stuck since. That holds if what comes down straight, the same velocities without
-    slip, is within the static cone; else slip never ends (``docs/space.md``, "Friction and impacts").
+    A contact of the set, all of which stick, slipped along ``s.came`` and has stopped. Where its shear is against
+    that slip, kinetic friction has stopped it, and no more than that may be used: ``s.grip`` becomes the kinetic
+    coefficient. Where its shear is along that slip, it has stuck since, and static friction holds if it also holds
+    the same set coming down straight, without any slip; else slip goes on, with kinetic friction
+    (``docs/space.md``, "Static and kinetic friction in an impact"). ``s.impulse`` and ``s.free`` stay.
     """
     lost, regains = False, False
     for m in range(size):

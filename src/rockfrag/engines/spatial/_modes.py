@@ -577,10 +577,11 @@ def bond_margin(body, rows, gravity):
 
 @kernel
 def bond_tension(body, rows, gravity):
-    """Largest force by which one side of a bond, two of its four pads, is in tension [N/kg]; negative if pressed.
+    """Twice the tension of that of a bond's four pads that is in most tension [N/kg]; negative if all are pressed.
 
-    Each of the four sides takes half of the load and the moment about the other axis over the distance of the
-    pads; body.pads holds half that distance, and body.aside how far the centre of mass is from between them.
+    A pad takes a quarter of the load, and of the moment about each axis a quarter over half the distance of the
+    pads, which body.pads holds; body.aside is how far the centre of mass is from between them. Twice a pad's is
+    what a side of two pads bears where one moment vanishes.
     """
     flat = algebra.to_body(rows, (gravity[0], gravity[1], 0.0))
     total = gravity[2]
