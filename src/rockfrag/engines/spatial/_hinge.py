@@ -43,7 +43,7 @@ def attempt(body, tau, h, y, s):
     field = s.field
     weight = to_body(rows, forces.effective_gravity_at(field, tau))
     rate = scaled(h, to_body(rows, (field[3], field[4], field[5])))
-    # arms about the edge, as it is and after a quarter of a turn: d × e and (d·e) e - d of equation 8, with d = -p
+    # arms about the edge, as it is and after a quarter of a turn: e × d and (d·e) e - d of equation 8, with d = -p
     upright = cross(p, e)
     turned = minus(p, scaled(dot(p, e), e))
     scale = h * h / inertia
