@@ -8,91 +8,37 @@ import math
 import numpy as np
 import pytest
 
-from ...mutants.plain import plain_library
-
-with plain_library():
-    from rockfrag.engines.spatial import _body as solid
-    from rockfrag.engines.spatial import _cone as cone
-    from rockfrag.engines.spatial import _forces as forces
-    from rockfrag.engines.spatial import _integrate as whole
-    from rockfrag.engines.spatial import _modes as modes
-    from rockfrag.engines.spatial import _step as step
-    from rockfrag.engines.spatial import _stick as stick
-    from rockfrag.engines.spatial import engine
-    from rockfrag.engines.spatial._algebra import rotation
-    from rockfrag.engines.spatial.body import kernel_body
-    from rockfrag.system import Tie, Wall
-    from rockfrag.system.body import Circle, Polygon, RigidBody
-    from rockfrag.system.contact import Contact
-    from rockfrag.system.system import System
-
-G = 9.81
-OUTLINE = (
-    (-0.3, -0.2),
-    (0.25, -0.25),
-    (0.35, 0.1),
-    (0.1, 0.3),
-    (-0.2, 0.25),
-    (-0.4, 0),
+from .plain_space import (
+    OUTLINE,
+    Circle,
+    Contact,
+    G,
+    RigidBody,
+    System,
+    Tie,
+    Wall,
+    attitude,
+    case,
+    cone,
+    engine,
+    forces,
+    inverse_mass,
+    jacobian,
+    kernel_body,
+    leaning,
+    mode,
+    modes,
+    plain,
+    point,
+    rotation,
+    set_down,
+    solid,
+    state,
+    step,
+    stick,
+    uneven,
+    whole,
 )
-
-
-def plain(record):
-    """A record whose fields are attributes."""
-    return np.array([record]).view(np.recarray)[0]
-
-
-def uneven(rng, *holders):
-    """A body of no symmetry on a hexagon, as the kernels know it."""
-    moments = rng.uniform(0.2, 0.3, 3)
-    tensor = np.diag(moments) + 0.02 * np.ones((3, 3))
-    centre = (0.03, -0.02, 0.6)
-    solid_body = RigidBody(1.0, tensor, centre, Polygon(OUTLINE), 1.3, Polygon(OUTLINE))
-    system = System((solid_body,), (Contact(),), constraints=tuple(holders))
-    body = kernel_body(system)
-    body["static"], body["kinetic"] = 0.5, 0.3
-    return plain(body)
-
-
-def state(rng, body):
-    """Any position, attitude and velocities."""
-    y = rng.normal(0, 0.5, solid.SIZE)
-    y[2] = body.height + 0.1
-    y[3:7] = np.array([1.0, *rng.normal(0, 0.2, 3)])
-    y[3:7] /= np.linalg.norm(y[3:7])
-    return y
-
-
-def case():
-    """Memory of an analysis on ground at rest."""
-    s = plain(np.zeros(1, forces.CASE)[0])
-    s.field[2], s.field[forces.GRAVITY] = -G, G
-    return s
-
-
-def attitude(y):
-    """Rotation matrix, world from body, of the quaternion."""
-    w, v = y[3], y[4:7]
-    skew = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return np.eye(3) + 2 * w * skew + 2 * skew @ skew
-
-
-def jacobian(y, p):
-    """What C's velocity (world) and the angular velocity (body) give to the velocity of the body's point p."""
-    skew = np.array([[0, -p[2], p[1]], [p[2], 0, -p[0]], [-p[1], p[0], 0]])
-    return np.hstack([np.eye(3), -attitude(y) @ skew])
-
-
-def point(body, i):
-    """Arm of vertex i."""
-    return np.array(body.points[i])
-
-
-def inverse_mass(body):
-    """Inverse of the mass matrix, for a unit of mass."""
-    found = np.eye(6)
-    found[3:, 3:] = np.linalg.inv(body.inertia)
-    return found
 
 
 def test_points_are_where_and_as_fast_as_the_attitude_says():
@@ -160,13 +106,6 @@ def test_an_edge_of_contacts_has_the_direction_from_one_to_the_other():
                 assert s.edge[i, j] == pytest.approx(way[:2] / length, abs=1e-13)
 
 
-def set_down(y, body):
-    """Put a state flat on the ground, turned about the vertical alone."""
-    y[2] = body.height
-    y[4] = y[5] = 0.0
-    y[3:7] /= np.linalg.norm(y[3:7])
-
-
 def test_of_six_points_that_touch_the_four_that_approach_fastest_are_looked_at():
     rng = np.random.default_rng(5)
     for _ in range(20):
@@ -231,13 +170,6 @@ def test_rest_is_kept_while_the_line_of_thrust_meets_the_base():
         assert (modes.rest_margin(body, y, rotation(y), pull, s) > 0) == stands
         kept.add(bool(stands))
     assert kept == {True, False}
-
-
-def mode(s, *closed, slides=0):
-    """Close points, all sticking or all sliding."""
-    s.count, s.rests = len(closed), 0
-    for k, i in enumerate(closed):
-        s.closed[k], s.slides[k] = i, slides
 
 
 @pytest.mark.parametrize("closed", [(), (2,), (3, 4)])
@@ -396,15 +328,6 @@ def test_a_tie_pulls_from_its_knot_to_its_anchor_by_stretch_and_rate():
         margin = forces.tie_margin(body, length, rate, 0)
         stretch = length - natural
         assert margin == pytest.approx(min(stretch, stretch + 40.0 * rate / 5e3))
-
-
-def leaning(body, tilt, towards):
-    """State of a body at rest that leans by a tilt towards a direction of the plan."""
-    y = np.zeros(solid.SIZE)
-    axis = np.array([-math.sin(towards), math.cos(towards), 0.0])
-    y[3], y[4:7] = math.cos(tilt / 2), math.sin(tilt / 2) * axis
-    y[2] = body.height
-    return y
 
 
 def test_a_body_is_beyond_its_balance_where_its_centre_leaves_the_base():

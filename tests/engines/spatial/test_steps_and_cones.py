@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import RK45, solve_ivp
 
 from ...mutants.plain import plain_library
-from .test_statements import (
+from .plain_space import (
     Circle,
     Contact,
     G,
@@ -35,7 +35,7 @@ from .test_statements import (
     stick,
     uneven,
 )
-from .test_statements import cone as cones
+from .plain_space import cone as cones
 
 with plain_library():
     from rockfrag.engines.spatial import _algebra as algebra

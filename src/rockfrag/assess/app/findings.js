@@ -64,7 +64,8 @@ const findings = (data, core, judge) => {
 
     function howLikely() {
       const kind = chosen("how_likely", few, atRest, rocks);
-      const nowhere = kind === "how_likely_at_rest" && !Number.isFinite(found.rocksFrom);
+      const nowhere =
+        kind === "how_likely_at_rest" && !Number.isFinite(found.rocksFrom);
       const id = nowhere ? "how_likely_rocks_nowhere" : kind;
       const topple = counts ? counts[2] : percent(found.value);
       const about =

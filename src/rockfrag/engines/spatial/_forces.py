@@ -482,12 +482,12 @@ def edge_forces(body, rows, edge, spin, weight, s):
     left = plus(scaled(alpha, momentum), scaled(square, cross(e, momentum)))
     left = minus(minus(left, twist), cross(p, force))
     far = scaled(1.0 / length, cross(left, e))
-    share_force(body, rows, e, force, far, s)
+    split_force(body, rows, e, force, far, s)
     return alpha, force
 
 
 @kernel
-def share_force(body, rows, e, force, far, s):
+def split_force(body, rows, e, force, far, s):
     """Share the part of the force of an edge that is along it so that both ends hold if they can; fill s.lam."""
     far, edge = to_world(rows, far), to_world(rows, e)
     near = minus(to_world(rows, force), far)

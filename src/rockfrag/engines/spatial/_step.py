@@ -229,9 +229,9 @@ def margin(body, y, s):
 
 
 @kernel
-def lesser(one, other):
+def lesser(first, other):
     """Return the lesser of two margins, each with what it belongs to; the first if the other is no number."""
-    return other if other[0] < one[0] else one
+    return other if other[0] < first[0] else first
 
 
 @kernel
