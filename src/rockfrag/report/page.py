@@ -41,7 +41,16 @@ from rockfrag.words.sentences import estimates, number, probability, sentence
 
 
 def in_a_page(value: Any) -> Any:
-    """A value as a page prints it: numbers stay on a line with their units; HTML stays as it is."""
+    """Return a value as a page prints it: numbers stay on a line with their units.
+
+    Parameters
+    ----------
+    value : what a template prints, of any type
+
+    Returns
+    -------
+    Text with no-break spaces between numbers and units; HTML and what is no text as it is.
+    """
     return kept_together(value) if type(value) is str else value
 
 
