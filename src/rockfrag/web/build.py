@@ -38,8 +38,8 @@ from rockfrag.web.space_entry import SPACE, describe_solid, integrate_solid
 
 TRIPLE = "wasm32-unknown-unknown"
 FEATURES = "+bulk-memory,+sign-ext,+nontrapping-fptoint"
-SPACE_INLINING = 30
-"""Size of what LLVM copies in a body in space: with 100 the module is 6 kB larger, and above what it may have."""
+SPACE_INLINING, PLANE_INLINING = 30, 200
+"""Size of what LLVM copies in a body in space and in a plane: by itself it makes modules larger than they may be."""
 MEMORY_PAGES = 2
 """Pages of 64 KiB that the module starts with; the page asks for more as histories need them."""
 
@@ -147,7 +147,7 @@ def build_plane() -> bytes:
         "sample": planar.SAMPLE,
         "event": planar.CONTACT_EVENT,
     }
-    return module_of(entries, records, constants, fused=None)
+    return module_of(entries, records, constants, fused=None, inlining=PLANE_INLINING)
 
 
 _VECTORS = {None: "", False: ",+simd128", True: ",+simd128,+relaxed-simd"}
