@@ -170,7 +170,7 @@ def _at_rest(answer: dict[str, Any]) -> bool:
     if starts is not None and level >= starts:
         return not answer["does_not_move"]
     words = answer["lines"][0]
-    unlikely = re.search("does not move|unlikely|too few|hardly rocks", words)
+    unlikely = re.search("does not rock|unlikely|too few|hardly rocks", words)
     counts = answer["counts"]
     still = counts is None or counts["rock"] == 0
     return still and (not answer["does_not_move"] or unlikely is not None)

@@ -334,14 +334,13 @@ def _accurate_step(p, w, interval, keeps):
         if part < stepping.SHORTEST or error <= accuracy:
             break
         part *= 0.5
-    everything = stepping.everything(p, True)
-    at_end = stepping.least_margin(p, w, w.q1, w.v1, everything)
+    at_end = stepping.least_margin(p, w, w.q1, w.v1, True)
     while not at_end >= -BURST and part > LEAST_STEP:
         # sliding that jams: forces grow faster than the step sees
         part *= 0.125
         stretch = stepping.beginning(stretch, 0.125)
         energies = stepping.take_step(p, w, stretch, keeps)
-        at_end = stepping.least_margin(p, w, w.q1, w.v1, everything)
+        at_end = stepping.least_margin(p, w, w.q1, w.v1, True)
     return part, stretch, energies, at_end
 
 
@@ -507,20 +506,20 @@ def _contact_event_in_step(p, w, at_end, stretch):
 
     State and ``w.fails`` are then those of that instant, on the quintic through the step.
     """
-    high = 1.0 if at_end < 0.0 else 2.0
+    high, at_high = 1.0 if at_end < 0.0 else 2.0, at_end
     by_force = stepping.force_fails(p, w)
     near = stepping.comes_near(p, w, stretch.length)
     for tau in (0.25, 0.5, 0.75):
         looks = tau == 0.5 and at_end < 0.02
         if near or looks:
-            watch = stepping.everything(p, looks)
-            if stepping.margin_at(p, w, tau, stretch, watch) < 0.0:
-                high = tau
+            value = stepping.margin_at(p, w, tau, stretch, looks)
+            if value < 0.0:
+                high, at_high = tau, value
                 by_force = looks and stepping.force_fails(p, w)
                 break
     if high > 1.0:
         return 2.0
-    return stepping.first_failure(p, w, high, by_force, stretch)
+    return stepping.first_failure(p, w, (high, at_high, by_force), stretch)
 
 
 @kernel

@@ -141,7 +141,6 @@ WORK = np.dtype(
         # speeds at which open ends part at the start of a step
         *fields("early", ALL, 2),
         *whole("fails", ALL, 7),  # [contact, channel] what has become negative
-        *fields("least", ALL),  # least margin of each contact that was watched
         # of each interface normal and tangent of its left and its right end, and a couple: motion per coordinate
         # of the bodies below and above, and motion without forces [interface, row]
         *fields("basis", ALL, 5, 6),

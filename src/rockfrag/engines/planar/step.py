@@ -10,7 +10,6 @@ event in it. What must stay positive: ``docs/contact.md``, equations 4 to 6; the
 import math
 from typing import NamedTuple
 
-from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.planar.bonds import bond_margin
 from rockfrag.engines.planar.search import BONDED
@@ -53,6 +52,10 @@ GAP, EDGE = 0, 2
 FRICTION, FALL, BREAK = 4, 5, 6
 
 
+MOTIONS, FORCES = False, True
+"""What margins are taken of: of motions alone, or of forces too."""
+
+
 class Stretch(NamedTuple):
     """A stretch of time over which the accelerations of the ground are linear."""
 
@@ -62,20 +65,6 @@ class Stretch(NamedTuple):
     # by which they rise over it [m/s²]
     rise_h: float
     rise_v: float
-
-
-class Watch(NamedTuple):
-    """Of what margins are taken: of some contacts, in a row, and the bodies that they touch."""
-
-    forces: bool  # whether forces count too, or motions alone
-    first: int  # contact
-    end: int  # the contact after the last one
-
-
-@kernel
-def everything(p, forces):
-    """Watch all contacts."""
-    return Watch(forces, 0, p.contacts)
 
 
 @kernel
@@ -216,39 +205,30 @@ def _powers(p, w, q, v, ah, av):
 
 
 @kernel
-def least_margin(p, w, q, v, watch):
-    """Least of what must stay positive (``docs/contact.md``, 4 to 6); ``w.fails`` says what is negative.
+def least_margin(p, w, q, v, forces):
+    """Least of all that must stay positive (``docs/contact.md``, 4 to 6); ``w.fails`` says what is negative.
 
-    ``watch``: a :class:`Watch`. With forces those in ``w`` count, without them motions alone do: gaps, edges,
-    slips and falls. ``w.least`` has the least margin of each contact that is watched.
+    With ``forces`` those in ``w`` count, without them motions alone do: gaps, edges, slips and falls.
     """
     least = math.inf
-    for k in range(watch.first, watch.end):
-        w.least[k] = _margin_of_contact(p, w, q, v, k, watch.forces)
-        least = min(least, w.least[k])
+    for k in range(p.contacts):
+        pressed = 0.0
+        w.fails[k, FALL] = 0
+        for end in range(2):
+            w.fails[k, GAP + end] = w.fails[k, EDGE + end] = 0
+            if w.closed[k, end] == 1:
+                pressed += w.normal[k, end]
+                margin = _margin_of_closed_end(p, w, q, k, end, forces)
+            else:
+                margin = _margin_of_open_end(p, w, q, k, end)
+            least = min(least, margin)
+        w.fails[k, FRICTION] = 0
+        if w.closed[k].any():
+            least = min(least, _margin_of_friction(p, w, q, v, k, forces, pressed))
+        if k < p.count:
+            least = min(least, _margin_of_fall(p, w, q, k))
     if p.is_held == 1:
-        least = min(least, _least_of_holding(p, w, q, v, watch.forces))
-    return least
-
-
-@kernel
-def _margin_of_contact(p, w, q, v, k, forces):
-    """Least margin of a contact and of the body above it."""
-    least, pressed = math.inf, 0.0
-    w.fails[k, FALL] = 0
-    for end in range(2):
-        w.fails[k, GAP + end] = w.fails[k, EDGE + end] = 0
-        if w.closed[k, end] == 1:
-            pressed += w.normal[k, end]
-            margin = _margin_of_closed_end(p, w, q, k, end, forces)
-        else:
-            margin = _margin_of_open_end(p, w, q, k, end)
-        least = min(least, margin)
-    w.fails[k, FRICTION] = 0
-    if w.closed[k].any():
-        least = min(least, _margin_of_friction(p, w, q, v, k, forces, pressed))
-    if k < p.count:
-        least = min(least, _margin_of_fall(p, w, q, k))
+        least = min(least, _least_of_holding(p, w, q, v, forces))
     return least
 
 
@@ -388,16 +368,15 @@ def force_fails(p, w):
 
 
 @kernel
-def margin_at(p, w, tau, stretch, watch):
+def margin_at(p, w, tau, stretch, forces):
     """Least margin at the fraction ``tau`` of the step; w.q and w.v are then those of that instant.
 
-    They lie on the quintic that has the coordinates, velocities and accelerations of both ends of the step. Of
-    those that ``watch`` leaves out nothing is computed; without forces no equations are solved.
+    They lie on the quintic that has the coordinates, velocities and accelerations of both ends of the step.
+    Without ``forces`` it is that of motions alone, which needs no equations to be solved.
     """
     h, t2 = stretch.length, tau * tau
     t3 = t2 * tau
-    first, end = max(0, watch.first - 1), min(p.count, watch.end)
-    for d in range(3 * first, 3 * end):
+    for d in range(3 * p.count):
         q0, v0, a0 = w.q0[d], h * w.v0[d], 0.5 * h * h * w.a0[d]
         v1, a1 = h * w.v1[d], 0.5 * h * h * w.a1[d]
         rise = w.q1[d] - q0 - v0 - a0
@@ -411,68 +390,60 @@ def margin_at(p, w, tau, stretch, watch):
         w.v[d] = (
             v0 + 2.0 * a0 * tau + t2 * (3.0 * c3 + tau * (4.0 * c4 + 5.0 * tau * c5))
         ) / h
-    for k in range(first, end):
-        w.sin[k], w.cos[k] = sin_cos(w.q[3 * k + 2])
-    if watch.forces:
+    look_at(p, w, w.q)
+    if forces:
         ah, av = ground_at(stretch, tau)
         solve_motion(p, w, w.q, w.v, ah, av)
-    return least_margin(p, w, w.q, w.v, watch)
+    return least_margin(p, w, w.q, w.v, forces)
 
 
 @kernel
-def first_failure(p, w, high, by_force, stretch):
-    """Fraction of the step just after the least margin has become negative; goes to the state there.
+def first_failure(p, w, failure, stretch):
+    """Find the fraction of the step just after the least margin has become negative, and go to the state there.
 
-    ``high``: a fraction of the step at which it is negative; ``by_force``: whether a force is among what fails
-    then.  Where none is, only motions are looked at on the way, which needs no equations to be solved, and only
-    those of the contacts that fail; where others turn out to fail earlier they are looked at too.
+    Where no force is among what fails, motions alone are followed on the way, which needs no equations to be
+    solved; if a force turns out to fail at the instant found, it is sought again with forces.
+
+    Parameters
+    ----------
+    p, w : records ``BODY`` and ``WORK``
+    failure : a fraction of the step, the negative margin there, and whether a force is among what fails
+    stretch : the step and its ground
+
+    Returns
+    -------
+    The fraction [-].
     """
-    all_forces = everything(p, True)
+    high, at_high, by_force = failure
     if not by_force:
-        margin_at(p, w, high, stretch, everything(p, False))
-        watch = _join_failing(p, w, Watch(False, p.contacts, 0))
-        while True:
-            high = _root(p, w, high, stretch, watch)
-            margin_at(p, w, high, stretch, all_forces)
-            if force_fails(p, w):
-                break
-            wider = _join_failing(p, w, watch)
-            if wider.first == watch.first and wider.end == watch.end:
-                return high
-            watch = wider
-    high = _root(p, w, high, stretch, all_forces)
-    margin_at(p, w, high, stretch, all_forces)
+        at_low = margin_at(p, w, 0.0, stretch, MOTIONS)
+        high = _root(p, w, (at_low, high, at_high), stretch, MOTIONS)
+        at_high = margin_at(p, w, high, stretch, FORCES)
+        if not force_fails(p, w):
+            return high
+    at_low = margin_at(p, w, 0.0, stretch, FORCES)
+    high = _root(p, w, (at_low, high, at_high), stretch, FORCES)
+    margin_at(p, w, high, stretch, FORCES)
     return high
 
 
 @kernel
-def _join_failing(p, w, watch):
-    """Watch those contacts too whose margin is negative; all where bodies are held."""
-    first, end = watch.first, watch.end
-    for k in range(p.contacts):
-        if w.least[k] < 0.0:
-            first, end = min(first, k), max(end, k + 1)
-    if p.is_held == 1 or first >= end:
-        return everything(p, watch.forces)
-    return Watch(watch.forces, first, end)
-
-
-@kernel
-def _root(p, w, high, stretch, watch):
+def _root(p, w, bracket, stretch, forces):
     """Fraction of the step just after the least margin has become negative, by Chandrupatla's method.
 
-    ``high``: a fraction of the step at which it is negative.  The least of several margins has kinks, and often
-    starts at its slack and rises before it falls: a parabola is trusted only where the last three values allow it,
-    and the interval is halved elsewhere (T. R. Chandrupatla, Advances in Engineering Software 28, 1997, 145-149).
+    ``bracket``: margin at the beginning, a fraction of the step, and the margin there.  The least of several
+    margins has kinks, and often starts at its slack and rises before it falls: a parabola is trusted only where
+    the last three values allow it, and the interval is halved elsewhere (T. R. Chandrupatla, Advances in
+    Engineering Software 28, 1997, 145-149).
     """
-    x1, f1 = high, margin_at(p, w, high, stretch, watch)
-    x2, f2 = 0.0, margin_at(p, w, 0.0, stretch, watch)
-    if f2 < 0.0 or f1 >= 0.0:
-        return 0.0 if f2 < 0.0 else high
+    at_low, high, at_high = bracket
+    if at_low < 0.0:
+        return 0.0
+    x1, f1, x2, f2 = high, at_high, 0.0, at_low
     part = 0.5
     while True:
         x = x1 + part * (x2 - x1)
-        value = margin_at(p, w, x, stretch, watch)
+        value = margin_at(p, w, x, stretch, forces)
         if (value < 0.0) == (f1 < 0.0):
             x3, f3 = x1, f1
         else:
