@@ -284,14 +284,15 @@ def solve_generally(p, w, q, v, sought, standing):
     add.
     """
     _fill_motion_without_forces(p, w, q, v, sought, standing)
+    # under gravity alone two bodies do not move relative to each other
+    is_forced = sought.impact or is_any_taut(p, w)
     for k in range(standing, p.contacts):
         _fill_equations(p, w, q, v, k, sought)
         # place d of a row is coordinate base + d: 0 to 2 of the body below, which count unless it is the ground or
         # stands, and 3 to 5 of the body above
         base = 3 * p.upper[k] - 3
         begin = 3 if k == standing or p.lower[k] < 0 else 0
-        if begin == 0 and not sought.impact and p.ties + p.is_sprung == 0:
-            # two bodies without forces do not move relative to each other
+        if begin == 0 and not is_forced:
             continue
         for i in range(3 * k, 3 * k + w.unknowns[k]):
             for d in range(begin, 6):
