@@ -206,7 +206,8 @@ def _octant(
 
     Each number is a sum: ``_low`` is what rounding leaves of it, and so the angle is returned. The quotient is
     brought near zero by the arc tangent of the nearest eighth, of which a table has both parts; its own remainder
-    follows from an exact product (Dekker, 1971, Numer. Math. 18: 224-242), and the rest is a short series.
+    follows from an exact product (Dekker, 1971, Numerische Mathematik 18: 224-242), and the rest is a short
+    series.
 
     Parameters
     ----------
