@@ -382,52 +382,43 @@ def _only_touching(p, w, trial):
 
 
 @kernel
-def _try_to_stick(p, w, trial, found):
-    """Let what a consistent mode has made slide stick, one by one; the mode to take, and whether more fit."""
+def _try_slips(p, w, trial, found):
+    """Try the other ways to slide of a consistent mode; the one to take, and whether more were consistent."""
     several = False
     for k in range(p.contacts):
         _take_tried(p, w, found)
+        slides = w.slides[k]
         lasts = _digit(w.closed, w.slides, k) == _digit(w.old_closed, w.old_slides, k)
         is_given = not trial.impact and w.moves[k] != 0
-        if w.slides[k] == 0 or lasts or is_given or w.whole[k] == BONDED:
+        if lasts or is_given or not w.closed[k].any() or w.whole[k] == BONDED:
             continue
-        w.slides[k] = 0
-        other = _try_anew(p, w, trial, NONE)
-        if other >= 0:
-            found, several = other, True
+        for way in range(-1, 2):
+            if way == slides:
+                continue
+            _take_tried(p, w, found)
+            w.slides[k] = way
+            other = _try_anew(p, w, trial, NONE)
+            several = several or other >= 0
+            # sticking goes before sliding
+            if other >= 0 and way == 0:
+                found = other
     return found, several
 
 
 @kernel
-def _open_changed(p, w, found):
-    """Set the mode in ``w`` to one that was tried, with the contacts open that it has changed."""
-    _take_tried(p, w, found)
-    for k in range(p.contacts):
-        before = _digit(w.old_closed, w.old_slides, k)
-        if _digit(w.closed, w.slides, k) != before and w.closed[k].any():
-            _set(w, k, 0)
-
-
-@kernel
 def _set_all(p, w, closed):
-    """Open all ends, or close and let stick all that touch."""
+    """Open all ends, or close and let stick all that touch, but for what a given speed of an end needs."""
     for k in range(p.contacts):
-        _set(w, k, closed)
-
-
-@kernel
-def _set(w, k, closed):
-    """Open contact k, or close and let stick what touches, but for what a given speed of an end needs."""
-    w.slides[k] = 0
-    for end in range(2):
-        stays = 1 if w.whole[k] != 0 else closed
-        w.closed[k, end] = stays * w.touching[k, end]
-    touches = closed == 1 and w.touching[k, 0] + w.touching[k, 1] > 0
-    if touches or w.whole[k] == GUIDED:
-        w.slides[k] = w.moves[k]
-    if w.drive[k] >= 0:
-        w.closed[k, w.drive[k]] = 0
-        w.closed[k, 1 - w.drive[k]] = 1
+        w.slides[k] = 0
+        for end in range(2):
+            stays = 1 if w.whole[k] != 0 else closed
+            w.closed[k, end] = stays * w.touching[k, end]
+        touches = closed == 1 and w.touching[k, 0] + w.touching[k, 1] > 0
+        if touches or w.whole[k] == GUIDED:
+            w.slides[k] = w.moves[k]
+        if w.drive[k] >= 0:
+            w.closed[k, w.drive[k]] = 0
+            w.closed[k, 1 - w.drive[k]] = 1
 
 
 @kernel
@@ -441,9 +432,7 @@ def search(p, w, trial, exclude):
     _only_touching(p, w, trial)
     w.count, found, several = 0, -1, False
     for start in range(3):
-        if start == 1 and found >= 0:
-            _open_changed(p, w, found)
-        elif start > 0:
+        if start > 0:
             _set_all(p, w, start - 1)
         other = _descend(p, w, trial, exclude)
         if other >= 0:
@@ -454,7 +443,7 @@ def search(p, w, trial, exclude):
             # it has come upon what was tried before: two ways lead to the same mode
             break
     if found >= 0:
-        found, more = _try_to_stick(p, w, trial, found)
+        found, more = _try_slips(p, w, trial, found)
         several = several or more
     if several:
         w.outcome.several_modes += 1
