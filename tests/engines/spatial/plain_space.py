@@ -7,6 +7,7 @@ import numpy as np
 from ...mutants.plain import plain_library
 
 with plain_library():
+    from rockfrag.engines.algebra.vectors import rotation
     from rockfrag.engines.spatial import _body as solid
     from rockfrag.engines.spatial import _cone as cone
     from rockfrag.engines.spatial import _forces as forces
@@ -15,7 +16,6 @@ with plain_library():
     from rockfrag.engines.spatial import _step as step
     from rockfrag.engines.spatial import _stick as stick
     from rockfrag.engines.spatial import engine
-    from rockfrag.engines.spatial._algebra import rotation
     from rockfrag.engines.spatial.body import kernel_body
     from rockfrag.system import Tie, Wall
     from rockfrag.system.body import Circle, Polygon, RigidBody

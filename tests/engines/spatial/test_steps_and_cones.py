@@ -38,7 +38,7 @@ from .plain_space import (
 from .plain_space import cone as cones
 
 with plain_library():
-    from rockfrag.engines.spatial import _algebra as algebra
+    from rockfrag.engines.algebra import vectors as algebra
 
 MODES = {
     "flight": ((), ()),

@@ -10,6 +10,15 @@ uppermost down, and what is above the first contact that has changed since the l
 with walls close the chain to loops; their equations are solved all together.
 """
 
+from rockfrag.engines.algebra.vectors import (
+    cross,
+    dot,
+    minus,
+    plus,
+    rows_times,
+    scaled,
+    times_rows,
+)
 from rockfrag.engines.compile.jit import inlined_kernel, kernel
 
 SINGULAR = 1e-9
@@ -68,56 +77,6 @@ def _matrix(a, k):
 
 
 @inlined_kernel
-def _dot(a, b):
-    """Inner product."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@inlined_kernel
-def _cross(a, b):
-    """Cross product."""
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
-
-
-@inlined_kernel
-def _times(rows, a):
-    """Product of a matrix and a vector."""
-    return _dot(rows[0], a), _dot(rows[1], a), _dot(rows[2], a)
-
-
-@inlined_kernel
-def _row_times(a, rows):
-    """Product of a row and a matrix."""
-    return (
-        a[0] * rows[0][0] + a[1] * rows[1][0] + a[2] * rows[2][0],
-        a[0] * rows[0][1] + a[1] * rows[1][1] + a[2] * rows[2][1],
-        a[0] * rows[0][2] + a[1] * rows[1][2] + a[2] * rows[2][2],
-    )
-
-
-@inlined_kernel
-def _scaled(x, a):
-    """Vector x a."""
-    return x * a[0], x * a[1], x * a[2]
-
-
-@inlined_kernel
-def _less(a, x, b):
-    """Vector a - x b."""
-    return a[0] - x * b[0], a[1] - x * b[1], a[2] - x * b[2]
-
-
-@inlined_kernel
-def _plus(a, b):
-    """Vector a + b."""
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
-
-
-@inlined_kernel
 def _eliminate_contact(p, w, q, k, on_body):
     """Eliminate contact k, under all that hangs on its body; False if it is singular.
 
@@ -159,14 +118,14 @@ def _hold(w, k, size):
     at = 3 * k
     first, second = _vector(w.row, at, 3), _vector(w.row, at + 1, 3)
     third = _vector(w.row, at + 2, 3)
-    across = _cross(second, third)
-    whole = _dot(first, across)
+    across = cross(second, third)
+    whole = dot(first, across)
     if not abs(whole) > SINGULAR * size:
         return False, NOTHING
     part = 1.0 / whole
-    still = _scaled(part * w.right[at], across)
-    still = _plus(still, _scaled(part * w.right[at + 1], _cross(third, first)))
-    still = _plus(still, _scaled(part * w.right[at + 2], _cross(first, second)))
+    still = scaled(part * w.right[at], across)
+    still = plus(still, scaled(part * w.right[at + 1], cross(third, first)))
+    still = plus(still, scaled(part * w.right[at + 2], cross(first, second)))
     return True, still
 
 
@@ -179,22 +138,24 @@ def _leave_one_way(w, k, inertia, asks):
     """
     at = 3 * k
     first, second = _vector(w.row, at, 3), _vector(w.row, at + 1, 3)
-    way = _cross(first, second)
-    idle = _cross(_vector(w.column, at, 3), _vector(w.column, at + 1, 3))
-    idle_inertia = _row_times(idle, inertia)
-    resists = _dot(idle_inertia, way)
+    way = cross(first, second)
+    idle = cross(_vector(w.column, at, 3), _vector(w.column, at + 1, 3))
+    idle_inertia = times_rows(idle, inertia)
+    resists = dot(idle_inertia, way)
     size = abs(idle_inertia[0] * way[0]) + abs(idle_inertia[1] * way[1])
     if not abs(resists) > SINGULAR * (size + abs(idle_inertia[2] * way[2])):
         return False, NOTHING, SAME
-    part = 1.0 / _dot(way, way)
-    asked = _scaled(part * w.right[at], _cross(second, way))
-    asked = _plus(asked, _scaled(part * w.right[at + 1], _cross(way, first)))
+    part = 1.0 / dot(way, way)
+    asked = scaled(part * w.right[at], cross(second, way))
+    asked = plus(asked, scaled(part * w.right[at + 1], cross(way, first)))
     pivot = 1.0 / resists
-    still = _less(asked, pivot * (_dot(idle_inertia, asked) + _dot(idle, asks)), way)
+    still = minus(
+        asked, scaled(pivot * (dot(idle_inertia, asked) + dot(idle, asks)), way)
+    )
     follows = (
-        _less(SAME[0], pivot * way[0], idle_inertia),
-        _less(SAME[1], pivot * way[1], idle_inertia),
-        _less(SAME[2], pivot * way[2], idle_inertia),
+        minus(SAME[0], scaled(pivot * way[0], idle_inertia)),
+        minus(SAME[1], scaled(pivot * way[1], idle_inertia)),
+        minus(SAME[2], scaled(pivot * way[2], idle_inertia)),
     )
     return True, still, follows
 
@@ -205,36 +166,31 @@ def _press_once(w, k, size, inertia, asks):
 
     With K = 1/J, row c and column d its force is (r + c K w + c X a') / (c K d).
     """
-    by_x, by_y = _cross(inertia[1], inertia[2]), _cross(inertia[2], inertia[0])
-    by_turn = _cross(inertia[0], inertia[1])
-    whole = _dot(inertia[2], by_turn)
+    by_x, by_y = cross(inertia[1], inertia[2]), cross(inertia[2], inertia[0])
+    by_turn = cross(inertia[0], inertia[1])
+    # K is these cofactors over the determinant
+    cofactors = by_x, by_y, by_turn
+    whole = dot(inertia[2], by_turn)
     largest = abs(inertia[0][0] * by_x[0]) + abs(inertia[1][1] * by_y[1])
     if not abs(whole) > SMALL * (largest + abs(inertia[2][2] * by_turn[2])):
         return False, NOTHING, SAME
     part = 1.0 / whole
-    falls = _yields(by_x, by_y, by_turn, _scaled(-part, asks))
+    falls = times_rows(scaled(-part, asks), cofactors)
     if size == 0:
         return True, falls, (NOTHING, NOTHING, NOTHING)
     row = _vector(w.row, 3 * k, 3)
-    yields = _yields(by_x, by_y, by_turn, _scaled(part, _vector(w.column, 3 * k, 3)))
-    pivot = _dot(row, yields)
+    yields = times_rows(scaled(part, _vector(w.column, 3 * k, 3)), cofactors)
+    pivot = dot(row, yields)
     if pivot == 0.0:
         return False, NOTHING, SAME
     light = 1.0 / pivot
-    still = _less(falls, light * (_dot(row, falls) - w.right[3 * k]), yields)
+    still = minus(falls, scaled(light * (dot(row, falls) - w.right[3 * k]), yields))
     follows = (
-        _scaled(light * yields[0], row),
-        _scaled(light * yields[1], row),
-        _scaled(light * yields[2], row),
+        scaled(light * yields[0], row),
+        scaled(light * yields[1], row),
+        scaled(light * yields[2], row),
     )
     return True, still, follows
-
-
-@inlined_kernel
-def _yields(by_x, by_y, by_turn, force):
-    """Motion by a force on what yields to its parts by the three vectors."""
-    yields = _plus(_scaled(force[0], by_x), _scaled(force[1], by_y))
-    return _plus(yields, _scaled(force[2], by_turn))
 
 
 @inlined_kernel
@@ -242,7 +198,7 @@ def _hang_on_below(p, w, q, k, follows):
     """Keep T X, and hang body k on the body below: J' = M + Xᵀ J T X and w' = Xᵀ (J t + w)."""
     inertia, still = _matrix(w.inertia, k), _vector(w.still, k, 0)
     across, up = q[3 * k] - q[3 * k - 3], q[3 * k + 1] - q[3 * k - 2]
-    asks = _plus(_times(inertia, still), _vector(w.asks, k, 0))
+    asks = plus(rows_times(inertia, still), _vector(w.asks, k, 0))
     _hang_nothing(p, w, k - 1)
     if w.unknowns[k] == 0:
         asks = NOTHING
@@ -255,8 +211,8 @@ def _hang_on_below(p, w, q, k, follows):
     if w.unknowns[k] == 0:
         return
     moves = _matrix(w.follows, k)
-    by_x, by_y = _row_times(inertia[0], moves), _row_times(inertia[1], moves)
-    by_turn = _row_times(inertia[2], moves)
+    by_x, by_y = times_rows(inertia[0], moves), times_rows(inertia[1], moves)
+    by_turn = times_rows(inertia[2], moves)
     for d in range(3):
         w.inertia[k - 1, 0, d] += by_x[d]
         w.inertia[k - 1, 1, d] += by_y[d]
@@ -270,28 +226,28 @@ def _substitute(p, w, standing):
     for k in range(standing, p.count):
         at, still = 3 * k, _vector(w.still, k, 0)
         moved = (
-            _plus(still, _times(_matrix(w.follows, k), moved))
+            plus(still, rows_times(_matrix(w.follows, k), moved))
             if k > standing
             else still
         )
         w.moved[at], w.moved[at + 1], w.moved[at + 2] = moved
         if w.unknowns[k] == 0:
             continue
-        asked = _plus(_times(_matrix(w.inertia, k), moved), _vector(w.asks, k, 0))
+        asked = plus(rows_times(_matrix(w.inertia, k), moved), _vector(w.asks, k, 0))
         # forces whose columns add up to what is asked
         first = _vector(w.column, at, 3)
         if w.unknowns[k] == 1:
-            w.force[at] = _dot(asked, first) / _dot(first, first)
+            w.force[at] = dot(asked, first) / dot(first, first)
             continue
         second = _vector(w.column, at + 1, 3)
         third = _vector(w.column, at + 2, 3)
-        across = _cross(first, second)
+        across = cross(first, second)
         if w.unknowns[k] == 2:
             third = across
-        part = 1.0 / _dot(across, third)
-        w.force[at] = part * _dot(asked, _cross(second, third))
-        w.force[at + 1] = part * _dot(asked, _cross(third, first))
-        w.force[at + 2] = part * _dot(asked, across)
+        part = 1.0 / dot(across, third)
+        w.force[at] = part * dot(asked, cross(second, third))
+        w.force[at + 1] = part * dot(asked, cross(third, first))
+        w.force[at + 2] = part * dot(asked, across)
 
 
 @kernel

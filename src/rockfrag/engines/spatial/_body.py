@@ -25,8 +25,7 @@ import math
 import numpy as np
 
 from rockfrag.base.arrays import fields, whole
-from rockfrag.engines.compile.jit import inlined_kernel, kernel
-from rockfrag.engines.spatial._algebra import (
+from rockfrag.engines.algebra.vectors import (
     TINY,
     cross,
     dot,
@@ -36,6 +35,7 @@ from rockfrag.engines.spatial._algebra import (
     times,
     to_world,
 )
+from rockfrag.engines.compile.jit import inlined_kernel, kernel
 
 SIZE = 15
 # where a state has the centre of mass, the attitude (a quaternion), its velocity, the angular velocity in the

@@ -19,13 +19,13 @@ import math
 import numpy as np
 
 from rockfrag.base.elementary import sin_cos
-from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.spatial._algebra import (
+from rockfrag.engines.algebra.vectors import (
     TINY,
     factor,
     norm,
     substitute,
 )
+from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial._forces import (
     MOST,
     in_set,

@@ -16,10 +16,8 @@ import math
 import numpy as np
 
 from rockfrag.base.arrays import fields, whole
-from rockfrag.engines.compile.jit import inlined_kernel, kernel
-from rockfrag.engines.spatial import _algebra as algebra
-from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial._algebra import (
+from rockfrag.engines.algebra import vectors as algebra
+from rockfrag.engines.algebra.vectors import (
     cross,
     dot,
     factor,
@@ -34,6 +32,8 @@ from rockfrag.engines.spatial._algebra import (
     to_body,
     to_world,
 )
+from rockfrag.engines.compile.jit import inlined_kernel, kernel
+from rockfrag.engines.spatial import _body as solid
 
 MOST = 4  # contacts that carry at once
 MOST_NEAR = 16  # contacts that a step of time stepping looks at

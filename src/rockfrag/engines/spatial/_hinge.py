@@ -11,10 +11,7 @@ Theory: ``docs/space.md``, equations 8, 13 and 22.
 """
 
 from rockfrag.base.elementary import sin_cos
-from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial import _forces as forces
-from rockfrag.engines.spatial._algebra import (
+from rockfrag.engines.algebra.vectors import (
     cross,
     dot,
     minus,
@@ -25,6 +22,9 @@ from rockfrag.engines.spatial._algebra import (
     to_body,
     to_world,
 )
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _forces as forces
 
 ORDER = forces.HINGE_ORDER
 

@@ -15,9 +15,9 @@ An interval is the time between two samples of the motion.
 import math
 
 from rockfrag.base.elementary import atan2, sin_cos
+from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import entry_kernel, kernel
 from rockfrag.engines.pure_rocking.kernels.roots import narrowed
-from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _hinge as hinge

@@ -18,8 +18,8 @@ Names (``_body`` explains the state and the numbers of contacts):
 import math
 
 from rockfrag.base.elementary import atan2
+from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _stick as stick

@@ -15,14 +15,7 @@ Theory: ``docs/space.md``, equation 4.
 
 import math
 
-from rockfrag.engines.compile.jit import inlined_kernel, kernel
-from rockfrag.engines.pure_rocking.kernels.dormand_prince import (
-    ERRORS,
-    INSTANTS,
-    WEIGHTS,
-)
-from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial._algebra import (
+from rockfrag.engines.algebra.vectors import (
     cross,
     dot,
     plus,
@@ -32,6 +25,13 @@ from rockfrag.engines.spatial._algebra import (
     to_body,
     to_world,
 )
+from rockfrag.engines.compile.jit import inlined_kernel, kernel
+from rockfrag.engines.pure_rocking.kernels.dormand_prince import (
+    ERRORS,
+    INSTANTS,
+    WEIGHTS,
+)
+from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial._forces import (
     ALONG,
     GRAVITY,

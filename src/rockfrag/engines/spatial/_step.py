@@ -9,6 +9,7 @@ positive. Theory: ``docs/space.md``, "Steps", and equation 23.
   which is negative if any is
 """
 
+from rockfrag.engines.algebra.vectors import cross, dot, norm, normalise, rotation
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.pure_rocking.kernels.dormand_prince import (
     INSTANTS,
@@ -20,7 +21,6 @@ from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _hinge as hinge
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _pivot as pivot
-from rockfrag.engines.spatial._algebra import cross, dot, norm, normalise, rotation
 from rockfrag.engines.spatial._forces import (
     SLIDES,
     STAGES,

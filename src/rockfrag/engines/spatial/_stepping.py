@@ -12,8 +12,8 @@ is its own compliance along each axis [-], ``closes`` how fast it may approach, 
 impulse [m/s]; axes 0 and 1 are along the contact, 2 is away from it.
 """
 
+from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _modes as modes

@@ -17,9 +17,7 @@ Names, all vectors in the body but those of the record ``s``:
 
 import math
 
-from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial._algebra import (
+from rockfrag.engines.algebra.vectors import (
     TINY,
     cross,
     dot,
@@ -30,6 +28,8 @@ from rockfrag.engines.spatial._algebra import (
     to_body,
     to_world,
 )
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial._forces import stop_edge, stop_point, twist_by_ties
 
 NOTHING = (0.0, 0.0, 0.0)

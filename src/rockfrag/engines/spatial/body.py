@@ -15,7 +15,7 @@ import numpy as np
 from rockfrag.base.arrays import Floats, with_attributes
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
-from rockfrag.engines.spatial._algebra import TINY
+from rockfrag.engines.algebra.vectors import TINY
 from rockfrag.engines.spatial._body import (
     ATTITUDE,
     BODY,

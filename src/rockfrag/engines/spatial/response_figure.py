@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.base import figure_style as style
-from rockfrag.engines.spatial._algebra import TINY
+from rockfrag.engines.algebra.vectors import TINY
 
 if TYPE_CHECKING:
     from rockfrag.engines.spatial.engine import SpatialOutcome

@@ -71,6 +71,22 @@ def times(matrix, a):
 
 
 @kernel
+def rows_times(rows, a):
+    """Product of a matrix, given by its rows, and the vector a."""
+    return (dot(rows[0], a), dot(rows[1], a), dot(rows[2], a))
+
+
+@kernel
+def times_rows(a, rows):
+    """Product of the vector a, as a row, and a matrix, given by its rows."""
+    return (
+        a[0] * rows[0][0] + a[1] * rows[1][0] + a[2] * rows[2][0],
+        a[0] * rows[0][1] + a[1] * rows[1][1] + a[2] * rows[2][1],
+        a[0] * rows[0][2] + a[1] * rows[1][2] + a[2] * rows[2][2],
+    )
+
+
+@kernel
 def rotation(y):
     """Rows of R, which are the world's axes as the body sees them, from the quaternion of a state."""
     return rotation_of(y[3], y[4], y[5], y[6])
@@ -102,17 +118,13 @@ def quaternion_rate(attitude, omega):
 @kernel
 def to_world(rows, a):
     """Components in the world of a vector of the body, R a."""
-    return (dot(rows[0], a), dot(rows[1], a), dot(rows[2], a))
+    return rows_times(rows, a)
 
 
 @kernel
 def to_body(rows, a):
     """Components in the body of a vector of the world, Rᵀ a."""
-    return (
-        a[0] * rows[0][0] + a[1] * rows[1][0] + a[2] * rows[2][0],
-        a[0] * rows[0][1] + a[1] * rows[1][1] + a[2] * rows[2][1],
-        a[0] * rows[0][2] + a[1] * rows[1][2] + a[2] * rows[2][2],
-    )
+    return times_rows(a, rows)
 
 
 @kernel

@@ -1,0 +1,1 @@
+"""Arithmetic that engines share: vectors of three, rotations and small linear systems."""
