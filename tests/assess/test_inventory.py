@@ -9,9 +9,11 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.inventory import (
     FaultyRows,
+    assess_each,
     assess_inventory,
     inventory_table,
     joint_lines,
+    read_inventory,
 )
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.outcomes import make_intensity_levels
@@ -166,3 +168,6 @@ def test_what_cannot_be_held_so_is_left_out_by_its_name(few, tmp_path, monkeypat
     assert fault.startswith("vase: key isolator:")
     with pytest.raises(FaultyRows, match="vase"):
         assess_inventory(path, {"pga": "0.4 g"})
+    requests, _ = read_inventory(path, {"pga": "0.4 g"})
+    with pytest.raises(FaultyRows, match="vase"):
+        assess_each(requests, few)

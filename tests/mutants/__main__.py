@@ -38,7 +38,7 @@ GROUPS = (
         compiled=("engines/planar", "engines/test_contract.py"),
     ),
     Group(
-        ("engines/spatial",),
+        ("engines/spatial", "engines/algebra"),
         plain=(
             "engines/spatial/test_impacts.py",
             "engines/spatial/test_physics.py",

@@ -22,7 +22,7 @@ from rockfrag.aftermath.shaken_ground import GroundShaking, level_of
 from rockfrag.assess.answer import RECORDS, Assessment
 from rockfrag.assess.core.estimates import INSIDE
 from rockfrag.assess.hazard.curve import PGA
-from rockfrag.assess.inventory import FaultyRows, assess_each, read_inventory
+from rockfrag.assess.inventory import assess_each, check_rows, read_inventory
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import Shaking
 from rockfrag.assess.request import Request
@@ -186,8 +186,7 @@ def after_earthquake(
         If a row is wrong, or nothing is known of the shaking of any object.
     """
     requests, faults = read_inventory(path, shared or {}, order=order)
-    if faults and not (keep_going and requests):
-        raise FaultyRows(faults)
+    check_rows(requests, faults, keep_going)
     shaken, beyond = _shaken_by(ground, requests)
     if not shaken:
         raise InputError(

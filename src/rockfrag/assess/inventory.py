@@ -284,12 +284,10 @@ def assess_inventory(
     The objects with their answers, and what is wrong with the other rows.
     """
     requests, faults = read_inventory(path, shared or {}, order=order)
-    if faults and not (keep_going and requests):
-        raise FaultyRows(faults)
+    check_rows(requests, faults, keep_going)
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
     requests = _held_as_simulated(requests, motions, faults)
-    if faults and not (keep_going and requests):
-        raise FaultyRows(faults)
+    check_rows(requests, faults, keep_going)
     found = assess_each(requests, motions, progress)
     joint = joint_risk(found)
     losses: dict[Any, float] = {}
@@ -304,6 +302,25 @@ def assess_inventory(
 
     found.sort(key=risk, reverse=True)
     return Inventory(found, motions, joint, faults)
+
+
+def check_rows(
+    requests: Sequence[Request], faults: Sequence[str], keep_going: bool
+) -> None:
+    """Raise what is wrong with rows of an inventory, unless the others are listed without them.
+
+    Parameters
+    ----------
+    requests, faults : what can be used, and what is wrong with the other rows, a sentence each
+    keep_going : whether the others are listed without them
+
+    Raises
+    ------
+    FaultyRows
+        If rows are wrong and they are not left out, or nothing can be used.
+    """
+    if faults and not (keep_going and requests):
+        raise FaultyRows(faults)
 
 
 def _held_as_simulated(
@@ -337,7 +354,15 @@ def assess_each(
     Returns
     -------
     An assessment each, in their order.
+
+    Raises
+    ------
+    FaultyRows
+        If an object is not simulated under the motions as it is held.
     """
+    faults: list[str] = []
+    _held_as_simulated(requests, motions, faults)
+    check_rows(requests, faults, keep_going=False)
     groups: dict[object, list[int]] = {}
     for i, request in enumerate(requests):
         about, level = request.objects, request.level
