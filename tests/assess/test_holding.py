@@ -185,6 +185,12 @@ def test_what_is_known_of_a_holder_is_taken_as_it_is():
     # an object has one isolator
     tries = [type(each) for each in holders_beside([made])]
     assert Pendulum not in tries and Springs not in tries
+    # what is fastened would hold an isolator fast
+    assert Bracket not in tries and Cords not in tries
+    for fastened in (Bracket(300.0), Cords(300.0)):
+        assert {each.key for each in holders_beside([fastened])}.isdisjoint(
+            {"isolator", fastened.key}
+        )
     for alone in ({"wall_height": "9 cm"}, {"cord_slack": "2 mm"}, springs):
         with pytest.raises(InputError, match=r"; give keys? .* too"):
             holder(**alone)

@@ -7,7 +7,7 @@ import pytest
 from scipy import signal
 
 from rockfrag import Block, Stack
-from rockfrag.system import BilinearIsolator, SlidingPendulum, as_system, hold
+from rockfrag.system import BilinearIsolator, SlidingPendulum, Tie, as_system, hold
 from rockfrag.system.support import Support
 
 from ...simulation.reference_bodies import random_motion
@@ -190,3 +190,64 @@ def test_the_mirror_image_of_an_isolated_stack_moves_as_its_mirror_image() -> No
     assert right.theta[: early.size][early] == pytest.approx(
         -left.theta[: early.size][early], abs=1e-7
     )
+
+
+def followed_by_steps(support: Support, body=BLOCK) -> object:
+    """The same system with a cord that hangs loose, so that general steps follow it."""
+    cord = Tie((0.0, 0.0, 0.5), (1.0, 0.0, 0.5), stiffness=1e3, slack=100.0)
+    return hold(as_system(body), cord, support=support)
+
+
+@pytest.mark.parametrize("kind", ["dish", "springs", "stiff springs"])
+@pytest.mark.parametrize("body", [BLOCK, Stack(Block(0.8, 0.3, 200.0), BLOCK)])
+def test_a_load_that_goes_with_its_plate_moves_as_by_general_steps(
+    kind: str, body
+) -> None:
+    support = {
+        "dish": SlidingPendulum(mass=20.0, radius=1.0, friction=0.05, stroke=0.2),
+        "springs": BilinearIsolator(mass=20.0, stiffness=2000.0, strength=100.0),
+        "stiff springs": BilinearIsolator(
+            mass=20.0, stiffness=2e6, strength=500.0, yield_displacement=1e-4
+        ),
+    }[kind]
+    rng = np.random.default_rng(11)
+    motion, up = 1.2 * random_motion(rng), 0.4 * random_motion(rng)
+    short, general = (
+        run(held, motion, friction=0.9, vertical=up)
+        for held in (isolated(support, body), followed_by_steps(support, body))
+    )
+    until = min(len(short.time), len(general.time))
+    size = np.abs(general.plate).max()
+    assert size > 1e-4
+    # general steps err by 1e-9 of √(g b) each
+    error = 1e-6 * size + 1e-8
+    assert np.abs(short.plate[:until] - general.plate[:until]).max() < error
+    for name in ("input", "lost_friction", "held"):
+        expected = np.asarray(general.energy[name])[:until]
+        found = np.asarray(short.energy[name])[:until]
+        assert np.abs(found - expected).max() <= 1e-4 * np.abs(expected).max()
+
+
+def test_a_load_leaves_its_plate_at_the_instant_at_which_general_steps_lift_it() -> None:
+    support = SlidingPendulum(mass=20.0, radius=0.5, friction=0.1, stroke=0.15)
+    motion = 3 * random_motion(np.random.default_rng(2))
+    short, general = (
+        run(held, motion, friction=0.9).contact_events
+        for held in (isolated(support), followed_by_steps(support))
+    )
+    first = [events[events["kind"] != "stick"].iloc[0] for events in (short, general)]
+    assert first[0]["kind"] == first[1]["kind"]
+    assert first[0]["time"] == pytest.approx(first[1]["time"], abs=1e-7)
+
+
+def test_a_plate_on_springs_swings_on_as_far_as_its_energy_reaches() -> None:
+    """A² = u² + v²/ω² beyond the end of the motion, which is when its history ends."""
+    stiffness, plate, ending = 2000.0, 20.0, 11
+    support = BilinearIsolator(mass=plate, stiffness=stiffness)
+    found = run(isolated(support), np.full(ending, 1.0), friction=0.9)
+    frequency = math.sqrt(stiffness / (M + plate))
+    # the motion ends by a ramp of one sample
+    gone = (ending - 0.5) * DT
+    # by superposition of the start and the end of a steady push
+    amplitude = 2.0 / frequency**2 * math.sin(0.5 * frequency * gone)
+    assert found.constraints["stroke_m"][0] == pytest.approx(amplitude, rel=1e-3)

@@ -208,7 +208,7 @@ class Isolator(Holder):
     key: ClassVar[str] = "isolator"
     demand: ClassVar[str] = "stroke"
     slow: ClassVar[bool] = True
-    seconds: ClassVar[float] = 1e-2
+    seconds: ClassVar[float] = 5e-3
 
     def holds_in_space(self, solid: System) -> bool:
         """In one plane only."""
@@ -278,7 +278,7 @@ class Springs(Isolator):
     strength: float | None = None
     yields_at: float = YIELDS_AT
     short = finding(Text.HELD_BY_SPRINGS)
-    seconds: ClassVar[float] = 6e-2
+    seconds: ClassVar[float] = 1e-2
 
     def _support(self, plate: float, carried: float) -> Support:
         """Return the springs."""
@@ -455,7 +455,13 @@ def holders_beside(there: Sequence[Holder]) -> list[Holder]:
     """
     kinds = {holder.key for holder in there}
     usual: list[Holder] = [Putty(), Bracket(), Cords(), Pendulum(), Springs()]
-    found = [holder for holder in usual if holder.key not in kinds]
+    useless = set(kinds)
+    # what is fastened to a wall or to the floor holds an isolator fast too
+    if "isolator" in kinds:
+        useless |= {Bracket.key, Cords.key}
+    if kinds & {Bracket.key, Cords.key}:
+        useless.add(Isolator.key)
+    found = [holder for holder in usual if holder.key not in useless]
     if "wall" in kinds:
         found.append(WithoutWall())
     if any(isinstance(holder, Casters) and not holder.locked for holder in there):

@@ -23,6 +23,12 @@ from rockfrag.engines.planar.bonds import (
     note_loads,
     note_rest_loads,
 )
+from rockfrag.engines.planar.carried import (
+    carried_energies,
+    carry_along,
+    is_carried,
+    swings_on,
+)
 from rockfrag.engines.planar.records import MOST
 from rockfrag.engines.planar.search import BONDED, mode_number, wall_number
 from rockfrag.engines.planar.solve import (
@@ -123,20 +129,12 @@ class Cases(NamedTuple):
     closing: Array
 
 
-class Instant(NamedTuple):
-    """A time [s], and the accelerations of the ground then [m/s²]."""
-
-    time: float
-    ah: float
-    av: float
-
-
 class Interval(NamedTuple):
     """From one sample of a motion to the next."""
 
     number: int  # of the first sample
-    now: Instant
-    late: Instant
+    now: stepping.Instant
+    late: stepping.Instant
     ground: stepping.Stretch
     substeps: int  # no step is longer than one of them
 
@@ -205,11 +203,18 @@ def integrate(p, shaking, start, closing, kept, w):
             _keep(p, w, kept.history[i + 1], now)
         if w.outcome.overturned_body > 0:
             break
-        stays = w.resting == 1 or (w.is_stale == 0 and _lies_still(p, w))
-        if i >= shaken and stays:
+        if i >= shaken and _stays(p, w):
             break
     w.outcome.leaning = 1 if _leans(p, w) else 0
     return done
+
+
+@kernel
+def _stays(p, w):
+    """Whether a column stays as it is over a ground at rest, or goes on as an isolator swings."""
+    if w.resting == 1 or (w.is_stale == 0 and _lies_still(p, w)):
+        return True
+    return w.knows_rest == 1 and is_carried(p, w) and swings_on(p, w)
 
 
 @kernel
@@ -220,7 +225,7 @@ def _cross_interval(p, w, interval, closing, kept):
     while w.tau < 1.0 and w.outcome.overturned_body == 0:
         if w.resting == 1:
             _rest(p, w, interval, closing, kept)
-        else:
+        elif not (is_carried(p, w) and _carry_to_end(p, w, interval, kept)):
             w.knows_rest = 0
             _step(p, w, interval, closing, kept)
 
@@ -229,7 +234,7 @@ def _cross_interval(p, w, interval, closing, kept):
 def _instant(interval, tau):
     """Instant at a fraction of an interval."""
     ah, av = stepping.ground_at(interval.ground, tau)
-    return Instant((interval.number + tau) * interval.ground.length, ah, av)
+    return stepping.Instant((interval.number + tau) * interval.ground.length, ah, av)
 
 
 @kernel
@@ -255,6 +260,27 @@ def _rest(p, w, interval, closing, kept):
     if w.resting == 1:
         # it failed by rounding only
         w.tau += 1e-9
+
+
+@kernel
+def _carry_to_end(p, w, interval, kept):
+    """Take what an isolator carries to the end of an interval; False if something else happens before."""
+    if w.knows_rest == 0:
+        _rest_margins(p, w)
+        w.knows_rest = 1
+    stretch = stepping.rest_of(interval.ground, w.tau)
+    if not carry_along(p, w, stretch):
+        return False
+    if kept.history.shape[0] > 0:
+        work, friction_loss, tied = carried_energies(p, w, stretch)
+        w.work += work
+        w.friction_loss += friction_loss
+        w.tied += tied
+    w.tau = 1.0
+    w.is_stale = 1
+    w.idle = w.jolts = 0
+    _track(p, w)
+    return True
 
 
 @kernel
@@ -431,7 +457,7 @@ def _now(shaking, i):
         ah = shaking.samples[i] * shaking.scale
         if shaking.vertical.size > 0:
             av = shaking.vertical[i] * shaking.scale
-    return Instant(i * shaking.dt, ah, av)
+    return stepping.Instant(i * shaking.dt, ah, av)
 
 
 @kernel
@@ -529,7 +555,7 @@ def _handle(p, w, now, closing, exclude, kept):
     Parameters
     ----------
     p, w : records ``BODY`` and ``WORK``
-    now : its :class:`Instant`
+    now : its :class:`Instant <rockfrag.engines.planar.step.Instant>`
     closing : as in :func:`integrate`
     exclude : whether the old mode is known to fail
     kept : a :class:`Kept`
@@ -712,8 +738,10 @@ def _keep_out(p, w, k):
 
 @kernel
 def _rest_margins(p, w):
-    """Margins of rest as linear functions of the two accelerations of the ground."""
+    """Margins of rest as linear functions of the two accelerations of what all stands on."""
     look_at(p, w, w.q)
+    # what an isolator carries rests on its plate as if that were the ground
+    slides, w.slides[0] = w.slides[0], 0
     for load in range(3):
         ah = 1.0 if load == 1 else 0.0
         av = 1.0 if load == 2 else 0.0
@@ -736,6 +764,7 @@ def _rest_margins(p, w):
     for row in range(4 * p.count):
         w.rest[row, 1] -= w.rest[row, 0]
         w.rest[row, 2] -= w.rest[row, 0]
+    w.slides[0] = slides
 
 
 @kernel

@@ -24,6 +24,7 @@ MOST_WALLED = 12  # contacts of bodies with walls
 ALL = MOST + MOST_WALLED  # contacts
 MOST_TIES = 8
 MOST_CONSTRAINTS = 16
+TERMS = 18  # of the series of a plate and its load (``carried.py``)
 TRIES = 1024  # modes that a search tries at most: more than three interfaces have
 AT_EDGE = 1e-9
 """A corner counts as over the face until it is this fraction of the half width beyond the edge: bases as wide as
@@ -181,6 +182,9 @@ WORK = np.dtype(
         # of a bilinear spring the way in which it yields, 0: none, whether that changes, and where it is at rest
         *whole("yields spring_fails"),
         *fields("plastic"),
+        # coefficients of the displacement of what an isolator carries, and their number
+        *fields("series", TERMS),
+        *whole("terms"),
         # end that comes down while the other is closed, -1: none
         *whole("falls", MOST),
         # speed at which the other end departs: without the law, with it

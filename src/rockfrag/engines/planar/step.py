@@ -56,6 +56,14 @@ MOTIONS, FORCES = False, True
 """What margins are taken of: of motions alone, or of forces too."""
 
 
+class Instant(NamedTuple):
+    """A time [s], and the accelerations of the ground then [m/s²]."""
+
+    time: float
+    ah: float
+    av: float
+
+
 class Stretch(NamedTuple):
     """A stretch of time over which the accelerations of the ground are linear."""
 
@@ -72,6 +80,15 @@ def beginning(stretch, part):
     """First ``part`` of a stretch, a fraction of its length [-], as a :class:`Stretch`."""
     rise_h, rise_v = part * stretch.rise_h, part * stretch.rise_v
     return Stretch(part * stretch.length, stretch.ah, stretch.av, rise_h, rise_v)
+
+
+@kernel
+def rest_of(stretch, part):
+    """What is left of a stretch after its first ``part``, a fraction of its length [-], as a :class:`Stretch`."""
+    ah, av = ground_at(stretch, part)
+    left = 1.0 - part
+    length, rise_h = left * stretch.length, left * stretch.rise_h
+    return Stretch(length, ah, av, rise_h, left * stretch.rise_v)
 
 
 @kernel
