@@ -228,7 +228,9 @@ def test_a_load_that_goes_with_its_plate_moves_as_by_general_steps(
         assert np.abs(found - expected).max() <= 1e-4 * np.abs(expected).max()
 
 
-def test_a_load_leaves_its_plate_at_the_instant_at_which_general_steps_lift_it() -> None:
+def test_a_load_leaves_its_plate_at_the_instant_at_which_general_steps_lift_it() -> (
+    None
+):
     support = SlidingPendulum(mass=20.0, radius=0.5, friction=0.1, stroke=0.15)
     motion = 3 * random_motion(np.random.default_rng(2))
     short, general = (
