@@ -56,33 +56,45 @@ def describe_shaken(call):
 
     Filled in ``call`` are ``body``, ``fault``, the accelerations ``uplift`` from which on it rocks [m/s²], the
     ``largest`` restitution that gains no energy, the ``centre`` (x, y [m]) and inertia [kg m²], and ``pivots`` of
-    a lone block, whose measured ratio is ``call.above``. Rocking on one pivot ends by an impact on the other one,
-    hence the restitution of ``-pivot``.
+    a lone block.
     """
-    body, g = call.body[0], call.body[0].gravity
-    upper, lower = entry.shape_of(call.statue), entry.shape_of(call.pedestal)
-    has_ratios = call.has_ratios != 0
-    body.measured = has_ratios
+    upper = entry.shape_of(call.statue)
+    call.body[0].measured = call.has_ratios != 0
     call.fault = geometry.STANDS if geometry.can_stand(upper) else geometry.FALLS_ALONE
     call.uplift, call.largest = np.inf, np.inf
     if call.stacked == 0:
-        geometry.fill_block(body, upper)
-        call.centre[0], call.centre[1], call.centre[2] = upper.x, upper.y, upper.inertia
-        entry.note_frequencies(call, upper, g)
-        for pivot in (1, -1):
-            after = geometry.momentum_restitution(upper, -pivot)
-            if has_ratios:
-                after = geometry.scaled_restitution(
-                    upper, -pivot, call.above, call.restitution_factor
-                )
-            here = call.pivots[(1 - pivot) // 2]
-            (
-                here.alpha, here.tan, here.sine, here.cosine, here.swing, here.restitution,
-                here.per_alpha, here.per_swing,
-            ) = geometry.pivot_constants(upper, pivot, after, g)  # fmt: skip
-            _note_uplift(call, geometry.arm(upper, pivot))
-            call.largest = min(call.largest, geometry.largest_restitution(upper, pivot))
-        return
+        _describe_block(call, upper)
+    else:
+        _describe_stack(call, entry.shape_of(call.pedestal), upper)
+
+
+@kernel
+def _describe_block(call, shape):
+    """Describe a lone block of a shape; its measured ratio of velocities is ``call.above``."""
+    body, g = call.body[0], call.body[0].gravity
+    geometry.fill_block(body, shape)
+    call.centre[0], call.centre[1], call.centre[2] = shape.x, shape.y, shape.inertia
+    entry.note_frequencies(call, shape, g)
+    for pivot in (1, -1):
+        # rocking on one pivot ends by an impact on the other one
+        after = geometry.momentum_restitution(shape, -pivot)
+        if call.has_ratios != 0:
+            after = geometry.scaled_restitution(
+                shape, -pivot, call.above, call.restitution_factor
+            )
+        here = call.pivots[(1 - pivot) // 2]
+        (
+            here.alpha, here.tan, here.sine, here.cosine, here.swing, here.restitution,
+            here.per_alpha, here.per_swing,
+        ) = geometry.pivot_constants(shape, pivot, after, g)  # fmt: skip
+        _note_uplift(call, geometry.arm(shape, pivot))
+        call.largest = min(call.largest, geometry.largest_restitution(shape, pivot))
+
+
+@kernel
+def _describe_stack(call, lower, upper):
+    """Describe two shapes on each other; their measured ratios are ``call.below`` and ``call.above``."""
+    body = call.body[0]
     pile = entry.stacked(call, body, lower, upper, 0.0)
     whole = geometry.joined(pile)
     call.centre[0], call.centre[1], call.centre[2] = whole.x, whole.y, whole.inertia

@@ -318,7 +318,7 @@ def lose_grip(s, n, mask, size, largest):
     A contact of the set, all of which stick, slipped along ``s.came`` and has stopped. Where its shear is against
     that slip, kinetic friction has stopped it, and no more than that may be used: ``s.grip`` becomes the kinetic
     coefficient. Where its shear is along that slip, it has stuck since, and static friction holds if it also holds
-    the same set coming down straight, without any slip; else slip goes on, with kinetic friction
+    the same set coming down straight (:func:`slips_on`); else slip goes on, with kinetic friction
     (``docs/space.md``, "Static and kinetic friction in an impact"). ``s.impulse`` and ``s.free`` stay.
     """
     lost, regains = False, False
@@ -331,9 +331,19 @@ def lose_grip(s, n, mask, size, largest):
             regains = regains or along >= 0.0
             if along < 0.0:
                 s.grip[i], lost = s.friction[i], True
-    if not regains:
-        return lost
-    # the same set as it would come down straight
+    if regains and slips_on(s, n, mask, size, largest):
+        lost = True
+    return lost
+
+
+@kernel
+def slips_on(s, n, mask, size, largest):
+    """Give kinetic friction to contacts that would slip if the set came down straight; whether there are any.
+
+    Arguments are those of :func:`lose_grip`. Asked are those that slipped before; they come down without that slip
+    here, and static friction has to hold them. ``s.impulse`` and ``s.free`` stay.
+    """
+    lost = False
     for i in range(3 * n):
         s.trial[i], s.kept[i] = s.impulse[i], s.free[i]
         if i % 3 != 2:
