@@ -80,6 +80,12 @@ def test_one_body_without_an_upper_limit_erases_nothing_that_others_show():
     )
 
 
+def test_ways_in_which_all_topples_leave_the_blind_interval_without_a_lower_limit():
+    ways = np.array([0.0, 0.0, 0.8, 1.0, 1.2])
+    low, high = BlindAnswer(1.0, 0.8, 0.0, 1.2, 0.05, 0.4, ways).interval()
+    assert low == 0.0 and 1.2 < high < np.inf
+
+
 def test_luck_is_no_proof_of_a_model_without_error():
     assert model_error([seen(0.0, 0.05)])[1] > 0.05
     assert model_error([])[1] == pytest.approx(PRIOR, rel=0.01)

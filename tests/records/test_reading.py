@@ -291,6 +291,8 @@ def test_motions_of_a_study_are_written_by_their_names(tmp_path, motion):
     found = motions_of_study(tmp_path / "floors.parquet")
     paths = write_motions(found, tmp_path / "out", "AT2")
     assert [path.name for path in paths] == ["Friuli-attic.AT2", "Kobe-ground.AT2"]
+    with pytest.raises(InputError, match="out: 'PDF' is no format"):
+        write_motions(found, tmp_path / "out", "PDF")
     same = [motion, Motion(motion.acceleration, 0.01, motion.name)]
     with pytest.raises(InputError, match="would have one file"):
         write_motions(same, tmp_path / "out", "AT2")

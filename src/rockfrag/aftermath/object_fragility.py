@@ -87,7 +87,8 @@ def object_fragilities(
 
     Returns
     -------
-    The fragilities, and the names of objects of which half of the motions topple none at any level.
+    The fragilities, and the names of objects without a median: fewer than half of the motions topple them at any
+    level.
     """
     level = Level(measure, ASKED[measure.imt])
     asked = [replace(each, level=level, hazard=()) for each in requests]

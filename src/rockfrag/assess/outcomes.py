@@ -551,7 +551,7 @@ def states_of(result: Outcomes) -> dict[str, Flags]:
 def simulated(
     systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
 ) -> tuple[Outcomes, list[bool]]:
-    """Simulate systems, and say which of them may have left the ground.
+    """Simulate systems, and say whether some may have left the ground.
 
     Parameters
     ----------
@@ -560,7 +560,8 @@ def simulated(
 
     Returns
     -------
-    The outcomes, and whether pure rocking may be no answer for a system.
+    The outcomes, and for each system whether pure rocking may be no answer: all of one and two bodies, if pure
+    rocking warns of any, as it does not say of which.
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", LightBodies)

@@ -448,9 +448,9 @@ def levels_table(found: Assessment) -> dict[Value, list[Value]]:
 def _return_periods(
     found: Assessment, hazard: HazardCurve, levels: Floats
 ) -> list[Value]:
-    """Return period of each level, as far as the hazard says something of such levels.
+    """Return period of each level, or the words that the hazard does not reach so far.
 
-    A hazard that was read says it up to its last level, one made of a single level up to that, and a bit beyond.
+    It reaches FURTHEST times the last level of a curve that was read, or the one level that it was made of.
     """
     furthest = FURTHEST * hazard.levels[-1]
     if found.request.level is not None and not found.request.hazard[0].is_read:

@@ -111,6 +111,7 @@ def held(options: argparse.Namespace, system: "System") -> "System":
 
 def _isolator(options: argparse.Namespace, carried: float) -> "Support | None":
     """Return the isolator of the options under a mass [kg], if there is one."""
+    from rockfrag.assess.core.holding import PLATE
     from rockfrag.system import BilinearIsolator, SlidingPendulum
     from rockfrag.system.contact import checked_friction
 
@@ -120,7 +121,8 @@ def _isolator(options: argparse.Namespace, carried: float) -> "Support | None":
         if getattr(options, name) is None:
             continue
         first, second, *more = _given(options, name)
-        stroke, mass = (*more, *(math.inf, 0.1 * carried)[len(more) :])
+        stroke = more[0] if more else math.inf
+        mass = more[1] if len(more) > 1 else PLATE * carried
         if name == "springs":
             return BilinearIsolator(
                 mass=mass, stroke=stroke, stiffness=first, strength=second

@@ -331,8 +331,8 @@ def resample(motion: Motion, dt_s: float) -> Motion:
     """Change the sampling interval of a band-limited signal (SciPy's polyphase filter); nothing is aliased.
 
     The values between samples become those of the band-limited signal, not of the straight lines:
-    peaks change, as the provenance says; :func:`interpolate` keeps the lines. A motion that does not begin and
-    end at zero is taken off the straight line between its ends first, so that it does not ring there.
+    peaks change, as the provenance says; :func:`interpolate` keeps the lines. Of a motion that does not begin and
+    end at zero the straight line between its ends is taken off first, so that it does not ring there.
     """
     dt_s = positive_number("step resample: dt_s", dt_s, "seconds")
     if dt_s >= motion.dt * motion.acceleration.size:

@@ -565,7 +565,7 @@ def _with_third_upright(components: Sequence[Component]) -> list[Component]:
 
 
 def _records_of(components: Sequence[Component]) -> list[list[Component]]:
-    """Group components of one record, by what :data:`_GROUPED_BY`."""
+    """Group components into records: by file, by headers, by names, and by station and time, in this order."""
     groups: list[list[Component]] = []
     components = _with_third_upright(components)
     left = list(components)
@@ -579,8 +579,10 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
                 by_key.setdefault(key, []).append(component)
         for several in by_key.values():
             # of copies the first
-            unlike = {component.digest: component for component in reversed(several)}
-            group = list(unlike.values())[::-1]
+            unlike: dict[str, Component] = {}
+            for component in several:
+                unlike.setdefault(component.digest, component)
+            group = list(unlike.values())
             if _is_record(group):
                 groups.append(group)
                 left = [component for component in left if component not in group]

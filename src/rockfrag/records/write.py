@@ -99,7 +99,7 @@ def write_motions(
     list
         Paths of the files, in order.
     """
-    name = _format("", format)
+    name = _format(folder, format)
     ending = WRITERS[name][0]
     paths: dict[Path, str] = {}
     for motion in motions:

@@ -199,7 +199,7 @@ def cord_peak_force(
 
     Parameters
     ----------
-    block : what turns about an edge of its base
+    block : what turns about an edge of its base, with its centre of gravity over the middle of that
     stiffness : of the cord [N/m]
     height : of the cord over the base [m]
     rate : angular velocity of the block when the cord gets taut [rad/s]

@@ -115,7 +115,9 @@ class BlindAnswer:
 
         Spread of the ways to stand and sampling of the input motions are combined as independent, in ln median.
         """
-        low = math.hypot(math.log(self.median / self.lower), _Z * self.sampling)
+        # a way in which all topples has the median 0
+        way_low = math.log(self.median / self.lower) if self.lower > 0 else math.inf
+        low = math.hypot(way_low, _Z * self.sampling)
         high = math.hypot(math.log(self.upper / self.median), _Z * self.sampling)
         return self.median * math.exp(-low), self.median * math.exp(high)
 

@@ -334,7 +334,7 @@ def _closed_mesh(path: Path, hull: bool) -> Any:
     if not mesh.is_watertight:
         _, count = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
         raise InputError(
-            f"{path}: the surface is not closed ({int((count % 2).sum())} edges belong to one triangle only), "
+            f"{path}: the surface is not closed ({int((count % 2).sum())} edges do not belong to two triangles), "
             "so it has no volume; close its holes, or take its convex hull (hull=True)."
         )
     if mesh.volume < 0:

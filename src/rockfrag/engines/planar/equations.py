@@ -34,10 +34,14 @@ SAME = (
 
 @kernel
 def solve_equations(p, w, q, standing, changed):
-    """Find ``w.force`` and the change of motion ``w.moved`` of all above what stands; False if singular.
+    """Find ``w.force`` and ``w.moved``, the change of motion of all bodies that move; False if singular.
 
-    ``changed``: the uppermost contact of the column whose equations are not those of the last call; ``q`` has x, y
-    and θ of each body, one after the other.
+    Parameters
+    ----------
+    p, w : records ``BODY`` and ``WORK``, with the equations of each contact in ``w``
+    q : coordinates, x, y [m] and θ [rad] of each body, shape (3 MOST,)
+    standing : number of bodies, from below, that do not move
+    changed : uppermost contact of the column whose equations are not those of the last call
     """
     if _is_chain(p, w):
         solved = True
@@ -46,7 +50,7 @@ def solve_equations(p, w, q, standing, changed):
         if solved:
             _substitute(p, w, standing)
             return True
-    # nothing of the chain stands for the next call
+    # the next call must eliminate all contacts anew
     w.listed[:] = -1
     return _solve_jointly(p, w, standing)
 

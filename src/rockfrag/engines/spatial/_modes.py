@@ -197,9 +197,8 @@ def kind_of_mode(s):
 def hold_still(body, y, rows, kind, s):
     """Stop the point or the edge that sticks by an impulse, in the state y (``docs/space.md``, equations 11, 12).
 
-    ``kind`` is PIVOT or HINGE, as :func:`kind_of_mode` found. Before the impulse all points have the velocity of
-    the centre of mass but for rotation. An edge may then have only a velocity along itself, that of both ends, so
-    that any tolerance of :func:`_forces.stop_edge` does.
+    ``kind`` is PIVOT or HINGE, as :func:`kind_of_mode` found. To both ends of an edge one load is given, the
+    velocity of the centre of mass, so that an impulse can stop both: :func:`_forces.stop_edge` needs no tolerance.
     """
     velocity = algebra.to_body(rows, solid.centre_velocity(y))
     momentum = algebra.times(body.inertia, solid.omega_of(y))
@@ -566,13 +565,15 @@ def keep_slow_contacts(body, y, rows, gravity, n, found, s):
 
 @kernel
 def bond_margin(body, rows, gravity):
-    """Margin by which a bond holds [N/kg], against tension at a pad and against shear (``docs/holding.md``).
+    """What a bond has left [N/kg]: of its tension, at the worst of four pads, and of its shear with friction.
 
-    A side, of two pads of four, holds half the tension of all.
+    Source: ``docs/holding.md``, 2.
     """
     weight = -gravity[2]
     shear = body.shear + body.static * weight - algebra.norm(gravity[0], gravity[1])
-    return min(2.0 * (0.5 * body.tension - bond_tension(body, rows, gravity)), shear)
+    # all pads hold twice what a side of two holds
+    tension = body.tension - 2.0 * bond_tension(body, rows, gravity)
+    return min(tension, shear)
 
 
 @kernel
