@@ -361,6 +361,17 @@ def test_what_rolls_and_never_rocks_starts_to_rock_at_no_level(few):
     found = assess_with(request, few, holders=False)
     said = "with casters that roll does not rock at PGA 0.4 g, nor at any level that"
     assert math.isinf(found.rocks_from) and said in lines_of(found)[0]
+    behind = " ".join(details_of(found))
+    assert "It rolls on its casters. It is held" in behind
+    assert "It rocks across" not in behind
     for language in ("en", "it"):
         words = [*lines_of(found, language), *details_of(found, language)]
         assert catalogue(language).text("unknown") not in " ".join(words)
+
+
+def test_without_a_level_the_answer_says_why_nothing_that_may_hold_it_is_tried(few):
+    """It said that holders are tried "on the page", which tries none without a level."""
+    found = assess_with(asked(width="30 cm", height="1 m"), few)
+    said = " ".join(details_of(found))
+    assert "is tried where the level of shaking is given" in said
+    assert "on the page: what it must bear" not in said

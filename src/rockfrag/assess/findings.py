@@ -20,6 +20,7 @@ from rockfrag.assess.core.scales import LARGEST_FACTOR
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.risk import Estimate
 from rockfrag.assess.sources import SOURCES, parts_of
+from rockfrag.assess.standing.holders import Casters
 from rockfrag.assess.texts import Text
 from rockfrag.words.catalogue import FIRST, catalogue
 from rockfrag.words.findings import (
@@ -68,11 +69,13 @@ TEXTS: Mapping[Callable[..., int], tuple[str, ...]] = {
     ),
     choices.starts: (Text.STARTS_AT, Text.STARTS_BEYOND),
     choices.over_years: (Text.YEARS_AT_MOST, Text.YEARS_OPEN, Text.YEARS_BETWEEN),
-    choices.reduces: (Text.NONE_LEFT, Text.REDUCES, Text.BEARS_MORE),
+    choices.reduces: (
+        *(Text.NONE_LEFT, Text.REDUCES, Text.BEARS_MORE, Text.REDUCES_NEARLY_ALL),
+    ),
     choices.change_alone: (
         *(Text.CELL_UNKNOWN, Text.CELL_BEARS_LESS, Text.CELL_INCREASES),
         *(Text.CELL_NONE_LEFT, Text.CELL_BEARS_OPEN, Text.CELL_REDUCES_OPEN),
-        *(Text.CELL_BEARS_MORE, Text.CELL_REDUCES),
+        *(Text.CELL_BEARS_MORE, Text.CELL_REDUCES, Text.CELL_REDUCES_NEARLY_ALL),
     ),
     choices.safest: (Text.SAFEST, Text.NO_SAFEST),
 }
@@ -393,9 +396,16 @@ def moves(found: Assessment) -> list[Finding]:
     objects = found.request.objects
     there = [holder.called() for holder in objects.under.holders]
     held = [finding(Text.HELD_AS_IT_STANDS, holders=listed(there))] if there else []
+    said: list[Finding] = []
+    rolls = any(isinstance(h, Casters) and not h.locked for h in objects.under.holders)
+    if rolls:
+        said.append(finding(Text.ROLLS_ON_CASTERS))
+    # on casters that roll it may start to rock at no level that was tried
+    rocks = not rolls or math.isfinite(found.rocks_from)
     if not found.motions.both:
-        return [objects.plane, *held]
-    said = [finding(objects.in_space_text)]
+        return [*said, *([objects.plane] if rocks else []), *held]
+    if rocks:
+        said.append(finding(objects.in_space_text))
     if found.planar is not None:
         said.append(finding(Text.IN_ONE_PLANE, value=value_of(found, found.planar)))
     return [*said, *held]
@@ -410,8 +420,16 @@ def helps(found: Assessment) -> list[Finding]:
         return [finding(Text.NO_CHANGE_NEEDED)]
     shown = [change for change in found.mitigations if change.shown][:MOST_CHANGES]
     said = [mitigation(found, change) for change in shown]
-    left_out = [] if found.tries_holders else [finding(Text.HOLDERS_NOT_TRIED)]
-    return (said or [finding(Text.NO_CHANGE_SHOWN)]) + left_out
+    return (said or [finding(Text.NO_CHANGE_SHOWN)]) + _holders_left_out(found)
+
+
+def _holders_left_out(found: Assessment) -> list[Finding]:
+    """Why what may hold it was not tried, if so: nothing is asked of it without a level, or it is left to the page."""
+    if found.tries_holders:
+        return []
+    if found.level is None:
+        return [finding(Text.HOLDERS_NEED_LEVEL)]
+    return [finding(Text.HOLDERS_NOT_TRIED)]
 
 
 def _reduction(change: Mitigation) -> dict[str, Value]:
@@ -423,6 +441,11 @@ def _reduction(change: Mitigation) -> dict[str, Value]:
     return {"value": percent(value), **limits}
 
 
+def _nearly_all(change: Mitigation) -> dict[str, Value]:
+    """The least that a change takes off that takes off nearly all."""
+    return {"lower": whole(choices.whole_percent_below(1.0 - change.upper))}
+
+
 def _whole_percent(part: float) -> Finding:
     return finding("whole_percent", value=whole(100 * part))
 
@@ -432,6 +455,8 @@ def mitigation(found: Assessment, change: Mitigation) -> Finding:
     text = _text(choices.reduces, change.factor, _grows(found))
     if text == Text.NONE_LEFT:
         return finding(text, change=change.change)
+    if text == Text.REDUCES_NEARLY_ALL:
+        return finding(text, change=change.change, **_nearly_all(change))
     return finding(text, change=change.change, **_reduction(change))
 
 
@@ -442,6 +467,8 @@ def mitigation_cell(found: Assessment, change: Mitigation) -> Finding:
     about: dict[str, Value] = {"value": percent(abs(1 - factor))}
     if text in (Text.CELL_UNKNOWN, Text.CELL_NONE_LEFT):
         about = {}
+    elif text == Text.CELL_REDUCES_NEARLY_ALL:
+        about = _nearly_all(change)
     elif change.shown:
         about = _reduction(change)
     return finding(text, **about)

@@ -155,7 +155,7 @@ def test_likelihoods_are_those_of_the_scale():
     assert steps == list(Likelihood)
 
 
-NUMBERS = (0.0, 0.005, 0.05, 0.2, 0.5, 0.8, 0.95, 1.0, np.inf, np.nan)
+NUMBERS = (0.0, 0.001, 0.005, 0.05, 0.2, 0.5, 0.8, 0.95, 1.0, np.inf, np.nan)
 
 
 @pytest.mark.parametrize("choice", TEXTS, ids=lambda choice: choice.__name__)
@@ -174,6 +174,16 @@ def test_every_choice_takes_each_of_its_texts_and_no_other(choice):
 def test_a_change_that_leaves_nothing_is_told_apart_from_one_that_changes_nothing():
     assert choices.reduces(0.0, grows=False) == choices.reduces(0.0, grows=True) == 0
     assert [choices.reduces(1.0, grows) for grows in (False, True)] == [1, 2]
+
+
+def test_of_what_takes_off_nearly_all_one_bound_is_said_and_never_all():
+    """It "takes off more than 99 % of the risk (100 to 100 %)"."""
+    nearly = TEXTS[choices.reduces][choices.reduces(0.004, grows=False)]
+    assert nearly == "reduces_nearly_all"
+    assert TEXTS[choices.reduces][choices.reduces(0.006, grows=False)] == "reduces"
+    parts = (0.0, 0.628, 0.99, 0.9999, 1.0)
+    found = [choices.whole_percent_below(part) for part in parts]
+    assert found == [0, 62, 99, 99, 99]
 
 
 def test_what_is_open_is_said_to_be_and_no_limit_is_said_twice():

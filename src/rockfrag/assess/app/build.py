@@ -109,6 +109,7 @@ PLAIN: dict[Any, tuple[Any, ...]] = {
     choices.needs_change: (_FLOAT, False, False),
     choices.reduces: (_FLOAT, False),
     choices.change_alone: (_FLOAT, False, False),
+    choices.whole_percent_below: (_FLOAT,),
     choices.tell_reduction: (*_LIMITS, _ROW),
     choices.names_source: (_FLOAT,),
     choices.lists_measurement: (_FLOAT,),

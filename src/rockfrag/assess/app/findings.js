@@ -45,6 +45,10 @@ const findings = (data, core, judge) => {
       upper: whole(100 * most),
     };
   }
+  // the least that a change takes off that takes off nearly all
+  const nearlyAll = ({ upper }) => ({
+    lower: whole(choose("whole_percent_below", 1 - upper)),
+  });
 
   // the first screen and what stands behind it, of an answer that may not be complete
   // yet
@@ -245,6 +249,9 @@ const findings = (data, core, judge) => {
       return finding(id, { width: four(100 * width) });
     }
     const changeOf = ({ name, values }) => finding(name, values);
+    const takenOff = (id, each) =>
+      ({ none_left: () => ({}), reduces_nearly_all: nearlyAll })[id]?.(each) ??
+      reduction(each);
     function helps() {
       if (!main) return [];
       if (!choose("needs_change", main.value, atRest, Boolean(probability)))
@@ -260,7 +267,7 @@ const findings = (data, core, judge) => {
         ...said.map(([id, each]) =>
           finding(id, {
             change: changeOf(each),
-            ...(id === "none_left" ? {} : reduction(each)),
+            ...takenOff(id, each),
           }),
         ),
         leftOut,
@@ -360,6 +367,7 @@ const findings = (data, core, judge) => {
         cell_unknown: () => ({}),
         cell_none_left: () => ({}),
         cell_reduces: () => reduction({ factor, lower, upper }),
+        cell_reduces_nearly_all: () => nearlyAll({ upper }),
       }[id] ?? (() => ({ value: percent(Math.abs(1 - factor)) }));
     return finding(id, about());
   }

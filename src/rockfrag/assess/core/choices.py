@@ -146,10 +146,25 @@ def needs_change(value: float, at_rest: bool, by_hazard: bool) -> bool:
 
 
 def reduces(factor: float, grows: bool) -> int:
-    """Place of a text: none is left (``factor`` 0), how much a change takes off, or how much more is borne."""
+    """Place of a text: none is left (``factor`` 0), how much a change takes off, how much more is borne, nearly all.
+
+    ``factor``: risk, or what it bears, with the change over that without [-]; ``grows``: whether growing helps.
+    """
     if factor == 0.0:
         return 0
-    return 2 if grows else 1
+    if grows:
+        return 2
+    return 3 if takes_nearly_all(factor) else 1
+
+
+def takes_nearly_all(factor: float) -> bool:
+    """Whether a change takes off so much of a risk that no digits of it are said; ``factor``: what is left [-]."""
+    return 1.0 - factor > SURE
+
+
+def whole_percent_below(part: float) -> int:
+    """Whole per cent that a part [-] is no less than, 99 at most: of what is not all, never all is said."""
+    return min(int(math.floor(100.0 * part)), 99)
 
 
 def change_alone(factor: float, grows: bool, shown: bool) -> int:
@@ -171,7 +186,9 @@ def change_alone(factor: float, grows: bool, shown: bool) -> int:
         return 3
     if not shown:
         return 4 if grows else 5
-    return 6 if grows else 7
+    if grows:
+        return 6
+    return 8 if takes_nearly_all(factor) else 7
 
 
 def tell_reduction(factor: float, lower: float, upper: float, found: Floats) -> None:
