@@ -424,7 +424,7 @@ def helps(found: Assessment) -> list[Finding]:
 
 
 def _holders_left_out(found: Assessment) -> list[Finding]:
-    """Why what may hold it was not tried, if so: nothing is asked of it without a level, or it is left to the page."""
+    """Why what may hold it was not tried, if so: without a level nothing is asked of it, or the page tries it."""
     if found.tries_holders:
         return []
     if found.level is None:

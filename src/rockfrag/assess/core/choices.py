@@ -146,7 +146,7 @@ def needs_change(value: float, at_rest: bool, by_hazard: bool) -> bool:
 
 
 def reduces(factor: float, grows: bool) -> int:
-    """Place of a text: none is left (``factor`` 0), how much a change takes off, how much more is borne, nearly all.
+    """Place of a text: none is left (``factor`` 0), what a change takes off, how much more is borne, nearly all.
 
     ``factor``: risk, or what it bears, with the change over that without [-]; ``grows``: whether growing helps.
     """
@@ -163,8 +163,8 @@ def takes_nearly_all(factor: float) -> bool:
 
 
 def whole_percent_below(part: float) -> int:
-    """Whole per cent that a part [-] is no less than, 99 at most: of what is not all, never all is said."""
-    return min(int(math.floor(100.0 * part)), 99)
+    """Whole per cent that a part from 0 to 1 [-] is no less than; never 100, as what is nearly all is not all."""
+    return min(int(100.0 * part), 99)
 
 
 def change_alone(factor: float, grows: bool, shown: bool) -> int:
