@@ -369,6 +369,15 @@ def test_what_rolls_and_never_rocks_starts_to_rock_at_no_level(few):
         assert catalogue(language).text("unknown") not in " ".join(words)
 
 
+def test_what_slides_on_locked_casters_and_never_rocks_is_not_said_to_rock(few):
+    """It "does not rock … nor at any level", and "rocks, turns and walks"."""
+    request = asked(width="60 cm", height="0.8 m", pga="0.4 g", casters="locked")
+    found = assess_with(request, few, holders=False)
+    behind = " ".join(details_of(found))
+    assert math.isinf(found.rocks_from)
+    assert "It slides on its locked casters. It is held" in behind
+
+
 def test_without_a_level_the_answer_says_why_nothing_that_may_hold_it_is_tried(few):
     """It said that holders are tried "on the page", which tries none without a level."""
     found = assess_with(asked(width="30 cm", height="1 m"), few)

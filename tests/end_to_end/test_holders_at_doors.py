@@ -1,12 +1,15 @@
 """Random combinations of what holds a body, at every door: each is answered, or refused in one sentence."""
 
 import random
+import re
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
+import yaml
 
 from rockfrag import Block, overturns
 from rockfrag.assess.answer import assess_with
@@ -23,6 +26,7 @@ from rockfrag.study.holding import read_isolators
 from ..assess.random_requests import some_request
 from ..conftest import motions_of_noise, write_records
 from ..fuzz.commands import called, record
+from .studies import Foreign, run_stages, write
 
 LONGEST = 400  # letters of a refusal
 
@@ -211,6 +215,44 @@ def listed(rng: random.Random, folder: Path) -> None:
     found = assess_inventory(table, {"pga": "0.4 g", "records": records})
     assert len(found.found) == 2
     assert len(inventory_lines(found)) >= 2
+
+
+HELD = """name,object,wall_cm,putty_n,casters
+alone,vase,,,
+isolated,vase | plinth | dish,,,
+at the wall,vase,3,,
+on wax,vase|plinth,,200,
+rolling,vase,,,free
+"""
+
+
+def test_a_study_of_what_holds_an_object_goes_on_to_its_report(tmp_path):
+    """It ended at forces, at slips, at a state that not all reach, and at tests that were the same."""
+    blocks = {"vase": (30, 90, 80), "plinth": (50, 40, 200)}
+    records = {"one": "First", "two": "Second"}
+    path = write(Foreign(blocks, {}, records), tmp_path)
+    (tmp_path / "isolators.csv").write_text(ISOLATORS)
+    (tmp_path / "configurations.csv").write_text(HELD)
+    content = yaml.safe_load(path.read_text())
+    content["bodies"]["isolators"] = "isolators.csv"
+    content["amplitudes"] |= {"lowest_g": 0.3, "step_percent": 40}
+    content["protocol"] = {"step_percent": 40}
+    path.write_text(yaml.safe_dump(content))
+    results = run_stages(path)
+    tables = {
+        name: pd.read_csv(next(results.rglob(f"{name}.csv")))
+        for name in ("validity", "sliding", "pairs")
+    }
+    # forces of every arrangement, and slips of the one that rolls
+    assert tables["validity"]["friction_demand"].notna().any()
+    assert set(tables["sliding"]["configuration"]) == {"rolling"}
+    # each is compared with the vase that nothing holds
+    others = ("isolated", "at the wall", "on wax", "rolling")
+    assert set(tables["pairs"]["object"]) == {
+        f"{name} against alone" for name in others
+    }
+    page = (results / "report.html").read_text(encoding="utf-8")
+    assert "on wax" in page and not re.search(r">\s*nan\s*<", page)
 
 
 DOORS = (simulated, arranged, trials_held, assessed, listed)

@@ -397,11 +397,13 @@ def moves(found: Assessment) -> list[Finding]:
     there = [holder.called() for holder in objects.under.holders]
     held = [finding(Text.HELD_AS_IT_STANDS, holders=listed(there))] if there else []
     said: list[Finding] = []
-    rolls = any(isinstance(h, Casters) and not h.locked for h in objects.under.holders)
-    if rolls:
+    casters = [each for each in objects.under.holders if isinstance(each, Casters)]
+    # on casters it may start to rock at no level that was tried
+    rocks = not casters or math.isfinite(found.rocks_from)
+    if any(not each.locked for each in casters):
         said.append(finding(Text.ROLLS_ON_CASTERS))
-    # on casters that roll it may start to rock at no level that was tried
-    rocks = not rolls or math.isfinite(found.rocks_from)
+    elif not rocks:
+        said.append(finding(Text.SLIDES_ON_CASTERS))
     if not found.motions.both:
         return [*said, *([objects.plane] if rocks else []), *held]
     if rocks:

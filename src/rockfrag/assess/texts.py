@@ -81,6 +81,7 @@ class Text(StrEnum):
     ROCKS_ACROSS = auto()
     ROCKS_ACROSS_NARROWER = auto()
     ROLLS_ON_CASTERS = auto()
+    SLIDES_ON_CASTERS = auto()
     ROCKS_TOWARDS = auto()
     ROLLS_IN_SPACE = auto()
     MOVES_IN_SPACE = auto()

@@ -307,12 +307,15 @@ def export_curves(
     One file per measure and floor, as both formats take one curve per object. OpenQuake knows motions of
     the ground only. Configurations without a curve are left out, and a measure without any has no file. Of
     rejected curves the points of the non-parametric function are written, as far as ``fractions`` has them.
-    Curves of overturning hold the errors of estimate and model unless ``model_error`` is False.
+    A limit state that not all configurations can reach, such as leaning at a wall, is left out, as OpenQuake
+    takes the same states of all. Curves of overturning hold the errors of estimate and model unless
+    ``model_error`` is False.
     """
     written = []
     for (floor, height, column), rows in curves.groupby(
         ["floor", "floor_level", "measure"], sort=False
     ):
+        rows = _of_common_states(rows)
         # rows of the configurations that have a curve for every state
         found = rows[["theta", "beta"]].to_numpy(dtype=float)
         whole = (np.isfinite(found) & (found > 0)).all(axis=1)
@@ -346,3 +349,10 @@ def export_curves(
             )
             written += [csv.name, json.name]
     return written
+
+
+def _of_common_states(curves: pd.DataFrame) -> pd.DataFrame:
+    """Rows of the limit states that all configurations of a table have."""
+    having = curves.groupby("state")["configuration"].nunique()
+    common = having.index[having == curves["configuration"].nunique()]
+    return curves[curves["state"].isin(common)]

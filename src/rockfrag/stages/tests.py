@@ -61,7 +61,9 @@ def run(job: Job[Study]) -> Results:
         validity_table(laboratory, study.configurations, by_name, job.threads),
     )
     if study.slides:
-        yield "sliding", sliding_table(job.file(path) for path in study.ida_files)
+        # casters alone let a body slide, so that others may stand beside it that cannot
+        loose = [each for each in study.configurations if each.loose]
+        yield "sliding", sliding_table(map(job.file, study.ida_files_of(loose)))
     censored = int((laboratory["censored"] != "none").sum())
     job.log.info("tests: %d, not overturned: %d", len(laboratory), censored)
 
@@ -209,7 +211,7 @@ def _shaken(
 
 def _forces(system: System, motions: list[GroundMotion], threads: int) -> pd.DataFrame:
     """Forces of a configuration under motions as they are, a row each."""
-    if system.loose or system.count > 2:
+    if system.loose or system.holding or system.count > 2:
         return _in_contact(system, motions)
     found = overturns(system, motions, forces=True, threads=threads)
     return pd.DataFrame(
@@ -223,7 +225,7 @@ def _forces(system: System, motions: list[GroundMotion], threads: int) -> pd.Dat
 
 
 def _in_contact(system: System, motions: list[GroundMotion]) -> pd.DataFrame:
-    """Forces of bodies that may slide, which only histories have."""
+    """Forces of bodies that may slide or are held, which only histories have."""
     rows = []
     for motion in motions:
         response = simulate(system, motion)
@@ -240,7 +242,7 @@ def _in_contact(system: System, motions: list[GroundMotion]) -> pd.DataFrame:
 
 
 def sliding_table(files: Iterable[Path]) -> pd.DataFrame:
-    """Count what friction did in the IDA curves of a study; one file is in memory at a time.
+    """Count what friction did in IDA curves of bodies that may slide; one file is in memory at a time.
 
     One row per configuration: ``configuration``, ``cases``, ``slid``, ``flew`` (cases), ``largest_slip_m``,
     ``saved`` and ``felled`` (cases that overturn only without, and only with, sliding and flight).

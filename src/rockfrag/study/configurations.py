@@ -125,6 +125,41 @@ def read_configurations(
     return list(found.values()), counterparts
 
 
+def against_nothing(
+    systems: Sequence[System], counterparts: Mapping[str, str]
+) -> dict[str, str]:
+    """Return counterparts, where something is held each arrangement's: its object alone, which nothing holds.
+
+    Without it several arrangements of one object would be the same test.
+
+    Parameters
+    ----------
+    systems : of the study, before they have its friction
+    counterparts : that are stated, by the name of the arrangement
+
+    Returns
+    -------
+    The counterparts; where nothing is held those that are stated.
+    """
+    found = dict(counterparts)
+    if not any(map(_is_held, systems)):
+        return found
+    alone: dict[str, str] = {}
+    for system in systems:
+        if system.count == 1 and not _is_held(system):
+            alone.setdefault(system.names[-1], system.name)
+    for system in systems:
+        other = alone.get(system.names[-1], system.name)
+        if other != system.name:
+            found.setdefault(system.name, other)
+    return found
+
+
+def _is_held(system: System) -> bool:
+    """Whether anything holds an arrangement, or it stands on casters."""
+    return bool(system.holding) or system.loose
+
+
 def _check_block(
     row: Row, column: str, name: str, blocks: Container[str], known: Sequence[str]
 ) -> None:

@@ -153,6 +153,7 @@ def _bodies_of(content: Mapping[str, Any], source: Path) -> dict[str, Any]:
     by_name = {configuration.name: configuration for configuration in known}
     tested = _used(source, "bodies", bodies.get("use"), list(by_name), "configurations")
     chosen = [by_name[name] for name in tested]
+    counterparts = arrangements.against_nothing(chosen, counterparts)
     return {
         "specimens_file": specimens_file,
         "specimens": specimens,

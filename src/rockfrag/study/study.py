@@ -5,7 +5,7 @@ In: what :mod:`rockfrag.study.loading` has read. Out: amplitudes [g], jobs, name
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -154,8 +154,12 @@ class Study(Heading):
 
     @property
     def with_and_alone(self) -> bool:
-        """Whether an object is compared with itself alone on the floor."""
-        lone = {system.names[-1] for system in self.configurations if system.count == 1}
+        """Whether an object is compared with itself alone on the floor, where nothing holds it."""
+        lone = {
+            system.names[-1]
+            for system in self.configurations
+            if system.count == 1 and not system.holding
+        }
         return any(
             system.names[-1] in lone
             for system in self.configurations
@@ -205,10 +209,14 @@ class Study(Heading):
     @property
     def ida_files(self) -> list[str]:
         """Paths of all IDA curves."""
+        return self.ida_files_of(self.configurations)
+
+    def ida_files_of(self, configurations: Sequence[System]) -> list[str]:
+        """Paths of the IDA curves of some configurations."""
         return [
             self.ida_file(configuration, job)
             for job in range(self.ida_jobs)
-            for configuration in self.configurations
+            for configuration in configurations
         ]
 
     @property
