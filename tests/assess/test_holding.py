@@ -341,8 +341,12 @@ def test_numbers_of_its_page_stay_on_a_line_with_their_units(found):
         ({"depth": "50 cm", "isolator": "10 cm"}, "key isolator: .* its depth makes"),
         ({"round": True, "wall": "5 cm"}, "key wall: .* its round base makes"),
         (
+            {"round": True, "wall": "5 cm", "wall_height": "9 cm"},
+            "key wall: .* its round base makes",
+        ),
+        (
             {"depth": "50 cm", "wall": "5 cm", "wall_height": "9 cm"},
-            "key wall: .* its depth makes",
+            "key wall_height: .* its depth makes",
         ),
     ],
 )

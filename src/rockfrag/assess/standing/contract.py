@@ -239,8 +239,8 @@ class Standing(ABC):
         for holder in self.under.holders:
             if not holder.holds_in_space(solid):
                 raise InputError(
-                    f"key {holder.key}: it is simulated in one plane, and {self.in_space_by} makes the object "
-                    "move in space; leave out one of them."
+                    f"key {holder.key_in_plane(solid)}: it is simulated in one plane, and {self.in_space_by} "
+                    "makes the object move in space; leave out one of them."
                 )
 
     def check(self) -> None:

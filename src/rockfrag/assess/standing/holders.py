@@ -80,6 +80,10 @@ class Holder(ABC):
     def short(self) -> Finding:
         """Its name, without what it bears."""
 
+    def key_in_plane(self, solid: System) -> str:
+        """Key that is to be left out of an object in space, which it does not hold there."""
+        return self.key
+
     def holds_in_space(self, solid: System) -> bool:
         """Whether it is simulated of an object in space."""
         return True
@@ -323,6 +327,11 @@ class Beside(Holder):
         if self.height < math.inf:
             return finding(Text.HELD_BY_LOW_WALL, height=two(100 * self.height))
         return finding(Text.HELD_BY_WALL)
+
+    def key_in_plane(self, solid: System) -> str:
+        """The height of a low wall beside what has corners, which is simulated in space beside a high one."""
+        high = replace(self, height=math.inf)
+        return "wall_height" if high.holds_in_space(solid) else self.key
 
     def holds_in_space(self, solid: System) -> bool:
         """As a wall of any height, beside what has corners."""
