@@ -373,6 +373,13 @@ def test_what_rolls_and_never_rocks_starts_to_rock_at_no_level(few):
         assert catalogue(language).text("unknown") not in " ".join(words)
 
 
+def test_one_pedestal_under_what_is_held_is_one():
+    """It was "safest fixed to its pedestals" on a single one, as many bodies and what holds one take as long."""
+    pedestal = {"width": "60 cm", "height": "30 cm"}
+    held = asked(**BOX, pga="0.3 g", pedestal=pedestal, putty="80 N").objects
+    assert list(held.arrangements())[:2] == ["on_its_pedestal", "fixed_to_its_pedestal"]
+
+
 def test_what_slides_on_locked_casters_and_never_rocks_is_not_said_to_rock(few):
     """It "does not rock … nor at any level", and "rocks, turns and walks"."""
     request = asked(width="60 cm", height="0.8 m", pga="0.4 g", casters="locked")

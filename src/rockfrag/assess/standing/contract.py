@@ -141,7 +141,7 @@ class Standing(ABC):
         if not self.pedestals:
             return {ALONE: body}
         on, fixed = Text.ON_ITS_PEDESTAL, Text.FIXED_TO_ITS_PEDESTAL
-        if self.many:
+        if len(self.pedestals) > 1:
             on, fixed = Text.ON_ITS_PEDESTALS, Text.FIXED_TO_ITS_PEDESTALS
         return {on: body, fixed: body.rigidly_joined(), ALONE: self.block}
 
