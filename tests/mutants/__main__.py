@@ -40,13 +40,22 @@ GROUPS = (
     Group(
         ("engines/spatial", "engines/algebra"),
         plain=(
-            "engines/spatial/test_impacts.py",
-            "engines/spatial/test_physics.py",
-            "engines/spatial/test_spin.py",
+            "engines/spatial/test_events.py",
             "engines/spatial/test_statements.py",
+            "engines/spatial/test_stepping.py",
             "engines/spatial/test_steps_and_cones.py",
         ),
-        compiled=("engines/spatial",),
+        compiled=(
+            "engines/spatial/test_balance.py",
+            "engines/spatial/test_doors.py",
+            "engines/spatial/test_figure.py",
+            "engines/spatial/test_holding.py",
+            "engines/spatial/test_impacts.py",
+            "engines/spatial/test_meshes.py",
+            "engines/spatial/test_physics.py",
+            "engines/spatial/test_spin.py",
+            "engines/spatial/test_wall_impacts.py",
+        ),
     ),
     Group(
         ("engines/pure_rocking",),

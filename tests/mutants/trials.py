@@ -1,6 +1,7 @@
 """Asking tests about one mutant: in a process of its own, forked from one that has loaded the libraries."""
 
 import ast
+import hashlib
 import json
 import os
 import resource
@@ -29,6 +30,8 @@ LONGEST_TEST_S = 4.0  # of the processor; slower tests are not asked
 SLOWER = 2
 # more that a test may take which waits for changed kernels to be compiled
 COMPILING_S = 60.0
+KEPT = ROOT / ".pytest_cache" / "mutants"
+"""Folder of what is known of the tests of a group, which takes minutes to find."""
 LONGEST_TRIAL_S = 40.0
 """Time of the processor that all tests of a mutant may take that does not change them."""
 
@@ -84,10 +87,10 @@ class TooSlow(BaseException):
 class _Watch:
     """Notes what each test did and how long it took, and ends the slow ones."""
 
-    def __init__(self, *, notes_calls: bool, plain: bool) -> None:
+    def __init__(self, *, notes_calls: bool, compiles: bool) -> None:
         self.notes_calls = notes_calls
         self.longest = LONGEST_TEST_S * (1 if notes_calls else SLOWER)
-        self.longest += 0.0 if plain else COMPILING_S
+        self.longest += COMPILING_S if compiles else 0.0
         self.seconds: dict[str, float] = {}
         self.reached: dict[str, list[str]] = {}
         self.failed: list[str] = []
@@ -160,9 +163,13 @@ def _silent() -> Iterator[None]:
 
 
 def run_tests(
-    names: Sequence[str], plain: bool, mutant: Mutant | None = None
+    names: Sequence[str],
+    plain: bool,
+    mutant: Mutant | None = None,
+    *,
+    compiles: bool = True,
 ) -> dict[str, Any]:
-    """Run tests in a fork.
+    """Run tests in a fork; in machine code a test has more time if it may be one that ``compiles``.
 
     Returns
     -------
@@ -179,7 +186,11 @@ def run_tests(
                 # whatever happens, this process ends here
                 try:
                     with _silent():
-                        _run_here(names, plain, mutant, scratch, write)
+                        watch = _Watch(
+                            notes_calls=mutant is None,
+                            compiles=compiles and not plain,
+                        )
+                        _run_here(names, plain, mutant, scratch, write, watch)
                 finally:
                     os._exit(3)
             os.close(write)
@@ -202,6 +213,7 @@ def _run_here(
     mutant: Mutant | None,
     scratch: str,
     write: int,
+    watch: _Watch,
 ) -> None:
     os.chdir(ROOT)
     if mutant is not None:
@@ -214,7 +226,6 @@ def _run_here(
         without_compiling()
     if mutant is not None:
         sys.path.insert(0, changed_library(mutant, scratch))
-    watch = _Watch(notes_calls=mutant is None, plain=plain)
     options = ["-q", "-p", "no:cacheprovider", "-m", "not slow", "--hypothesis-seed=1"]
     options += ["--continue-on-collection-errors"]
     if plain:
@@ -276,16 +287,32 @@ def quick_tests(files: Sequence[str], plain: bool) -> QuickTests:
     if not files:
         return QuickTests({}, {})
     names = [f"tests/{name}" for name in files]
-    if not plain:
-        # once to compile
-        run_tests(names, plain)
-    found = run_tests(names, plain)
+    kept = KEPT / f"{_digest(names, plain)}.json"
+    if not kept.exists():
+        if not plain:
+            # once to compile
+            run_tests(names, plain)
+        found = run_tests(names, plain, compiles=False)
+        KEPT.mkdir(parents=True, exist_ok=True)
+        kept.write_text(json.dumps(found), encoding="utf-8")
+    found = json.loads(kept.read_text(encoding="utf-8"))
     quick = {
         name: seconds
         for name, seconds in found["seconds"].items()
         if seconds < LONGEST_TEST_S
     }
     return QuickTests(quick, found["reached"])
+
+
+def _digest(names: Sequence[str], plain: bool) -> str:
+    """Of the library, some tests and what lies beside them: what tests take and reach depends on these."""
+    places = [ROOT / name for name in names]
+    folders = {place if place.is_dir() else place.parent for place in places}
+    digest = hashlib.sha256(json.dumps([*names, plain]).encode())
+    for folder in (SOURCE, *sorted(folders)):
+        for path in sorted(folder.rglob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 @dataclass(frozen=True)
