@@ -7,10 +7,12 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from scipy.integrate import RK45, solve_ivp
+from scipy.integrate._ivp.rk import rk_step
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
+from ...mutants.plain import plain_library
 from .plain_space import (
     OUTLINE,
     Circle,
@@ -37,9 +39,15 @@ from .plain_space import (
     solid,
     state,
     step,
+    stick,
     uneven,
     whole,
 )
+
+with plain_library():
+    from rockfrag.engines.spatial import _cone as cones
+    from rockfrag.engines.spatial import _hinge as hinge
+    from rockfrag.engines.spatial import _pivot as pivot
 
 DT = 0.01
 CORNERS = np.array(OUTLINE) - (0.03, -0.02)
@@ -582,13 +590,13 @@ def test_against_a_wall_a_body_neither_tips_nor_needs_ground_for_what_the_wall_b
     """A box that stands with its side at a wall towards +x."""
     base = Polygon(((-0.2, -0.3), (0.2, -0.3), (0.2, 0.3), (-0.2, 0.3)))
     box = RigidBody(1.0, np.diag([0.3, 0.3, 0.1]), (0.0, 0.0, 0.5), base, 1.0, base)
-    holders = (Wall(0.2, 0.0, friction=0.3),)
+    holders = (Wall(5.0, 1.0), Wall(0.2, 0.0, friction=0.3))
     body = kernel_body(System((box,), (Contact(),), constraints=holders))
     body["static"], body["kinetic"] = 0.5, 0.3
     body, s = plain(body), case()
     y = upright(body)
     rows = rotation(y)
-    assert modes.lies_against(body, y, rows, 0)
+    assert modes.lies_against(body, y, rows, 1)
     assert modes.meets_wall(body, y, rows)
     assert modes.backed_by_wall(body, y, rows, 1, 2)
     assert not modes.backed_by_wall(body, y, rows, 2, 3)
@@ -601,7 +609,7 @@ def test_against_a_wall_a_body_neither_tips_nor_needs_ground_for_what_the_wall_b
     margin = modes.rest_margin(body, y, rows, (-4.0, 0.0, -G), s)
     assert margin == pytest.approx(min(0.5 * G - 4.0, 0.2 / 0.5 * G - 4.0))
     y[0] -= 1e-6
-    assert not modes.lies_against(body, y, rows, 0)
+    assert not modes.lies_against(body, y, rows, 1)
     assert not modes.meets_wall(body, y, rows)
     assert modes.borne_by_ground(body, y, rows, (9.0, 1.0, -G)) == (9.0, 1.0, -G)
 
@@ -840,3 +848,186 @@ def test_a_face_that_tips_as_it_slides_keeps_its_velocities_and_gains_nothing():
     held = y.copy()
     whole.rim_instead_of_feet(body, held, tuple(s.field[:3]), s)
     assert (s.count, (held == y).all()) == (3, True)
+
+
+def test_a_point_beside_an_edge_lands_where_the_turn_about_the_edge_takes_it():
+    """Height of a point of a body that turns about an edge, by Rodrigues' rotation."""
+    rng, found = np.random.default_rng(29), 0
+    for _ in range(6):
+        body, s = uneven(rng), shaken(rng)
+        towards = math.atan2(*CORNERS[[3, 4]].mean(axis=0)[::-1])
+        y = leaning(body, 0.02, towards)
+        mode(s, 3, 4)
+        modes.close_gaps(body, y, rotation(y), s)
+        e = point(body, 4) - point(body, 3)
+        e /= np.linalg.norm(e)
+        # back to the ground, a little past it at the end of the step
+        y[10:13] = (
+            -3.0 * e if np.cross(e, point(body, 0) - point(body, 3))[2] > 0 else 3 * e
+        )
+        modes.anchor_all(body, y, s)
+        modes.settle(body, y, s)
+        h = 0.01
+        step.attempt(body, 0.0, h, y, s)
+
+        def height(part, y=y, s=s, body=body, e=e):
+            turned = sum(s.angle[k] * part**k for k in range(forces.HINGE_ORDER + 1))
+            r = attitude(y) @ Rotation.from_rotvec(turned * e).as_matrix()
+            at = y[:3] + attitude(y) @ point(body, 3)
+            return (at + r @ (point(body, 0) - point(body, 3)))[2]
+
+        if height(1.0) > 0 or height(0.0) < 0:
+            continue
+        part = hinge.landing(body, y, 0, 0.9, 1e-5, s)
+        assert height(part) == pytest.approx(-1e-5, abs=1e-8)
+        found += 1
+    assert found > 2
+
+
+def test_the_error_of_a_step_about_a_contact_is_the_difference_of_the_pair():
+    """Of what turns and what is integrated along, by SciPy's weights; twice of the attitude over the arm."""
+    rng, h = np.random.default_rng(30), 0.02
+    for name in ("vertex", "rim"):
+        for _ in range(4):
+            body = drum() if name == "rim" else uneven(rng)
+            s, y = shaken(rng), leaning(body, 0.3, rng.uniform(0, 6))
+            mode(s, body.count if name == "rim" else 2)
+            y[10:13] = rng.normal(0, 2, 3)
+            modes.anchor_all(body, y, s)
+            modes.settle(body, y, s)
+
+            def motion(time, x, body=body, s=s):
+                rate, along, _ = pivot.turning_rates(body, time, tuple(x[:7]), s)
+                return np.array([*rate, *along])
+
+            start = np.array([*y[3:7], *y[10:13], 0.0, 0.0, 0.0])
+            k = np.empty((7, 10))
+            rk_step(
+                motion, 0.0, start, motion(0.0, start), h, RK45.A, RK45.B, RK45.C, k
+            )
+            off = np.abs(h * (RK45.E @ k))
+            p = np.linalg.norm(solid.arm(body, rotation(y)[2], s.closed[0]))
+            worst = max(
+                off[:4].max(), (off[4:7] / (1 + np.abs(y[10:13]))).max(), off[7:9].max()
+            )
+            step.begin(body, 0.0, y, s)
+            found = step.attempt(body, 0.0, h, y, s)
+            assert found == pytest.approx(worst * max(1, 2 * p), rel=1e-4)
+
+
+def test_both_ways_of_stopping_an_edge_share_its_impulse_alike():
+    """In closed form about the edge, and as one set of all sets of cones."""
+    rng, both = np.random.default_rng(31), 0
+    for _ in range(30):
+        body, s = uneven(rng), case()
+        body.static = body.kinetic = 2.0
+        y = leaning(body, 0.1, 0.0)
+        mode(s, 1, 2)
+        for _ in range(4):
+            modes.close_gaps(body, y, rotation(y), s)
+        y[7:13] = rng.normal(0, 0.5, 6)
+        y[9] = -1.0
+        s.which[:2] = 1, 2
+        rows = rotation(y)
+        momentum = stick.fill_velocities(body, y, rows, 2, s)
+        modes.note_slips(body, 2, s)
+        if stick.stick_alone_or_by_two(body, rows, 2, 0, momentum, s)[0] != 3:
+            continue
+        expected = np.array(s.impulse[:6])
+        forces.fill_delassus(body, rows, s.which, 2, s.delassus)
+        modes.fill_edges(body, y, rows, s.which, 2, s)
+        assert cones.solve_cones(s, 2, 0)[0] == 3
+        assert s.impulse[:6] == pytest.approx(expected, abs=1e-8)
+        both += 1
+    assert both > 2
+    # contacts of two surfaces have no edge that one could slide across
+    s.edge[:] = 0.0
+    cones.members(s, 2, 3)
+    assert not cones.slide_one_end(s, 2, 1e-9)
+
+
+def test_a_body_slides_on_its_face_while_the_centre_of_pressure_is_inside():
+    """It is ahead of the centre of mass by the coefficient of friction times the height."""
+    rng, kept = np.random.default_rng(32), set()
+    for _ in range(16):
+        body, s = uneven(rng), case()
+        # the principal axes upright, so that nothing else turns it
+        body.inertia = np.diag(np.diag(body.inertia))
+        body.inverse = np.linalg.inv(body.inertia)
+        body.kinetic = body.static = rng.uniform(0.1, 0.9)
+        y = upright(body)
+        way = rng.uniform(0, 6)
+        y[7:9] = math.cos(way), math.sin(way)
+        ahead = body.kinetic * body.height * y[7:9]
+        gravity = (0.0, 0.0, -G)
+        stays = modes.carried_flat(body, 0.0, y, rotation(y), gravity, s)
+        assert modes.pressure_centre(body, s) == pytest.approx(ahead, abs=1e-9)
+        along = np.roll(CORNERS, -1, axis=0) - CORNERS
+        beside = ahead - CORNERS
+        inside = (along[:, 0] * beside[:, 1] - along[:, 1] * beside[:, 0] > 0).all()
+        assert stays == inside
+        kept.add(bool(stays))
+        if stays:
+            assert modes.choose_mode(body, 0.0, y, s)
+            assert (s.count, s.rests) == (4, 0)
+            assert (s.slides[:4] == forces.SLIDES).all()
+    assert kept == {True, False}
+
+
+@pytest.mark.parametrize("at_rest", [0, 40])
+def test_a_box_that_is_shaken_along_its_side_rocks_as_housner_says(at_rest):
+    """From any time at rest to the first impact; the history has a row for each sample, and those after."""
+    half, height, dt = 0.2, 0.6, 0.02
+    base = Polygon(((-half, -0.3), (half, -0.3), (half, 0.3), (-half, 0.3)))
+    tensor = np.diag([0.36 + 1.44, 0.16 + 1.44, 0.16 + 0.36]) / 12
+    made = RigidBody(1.0, tensor, (0.0, 0.0, height), base, 1.2, base)
+    body = plain(kernel_body(System((made,), (Contact(),)), G))
+    pulse = np.array([5.0, 6.0, 6.0, 4.0, 0.0, -2.0, -4.0, -2.0])
+    motion = np.zeros((at_rest + pulse.size + 6, 3))
+    motion[at_rest : at_rest + pulse.size, 0] = pulse
+    peaks, history = np.zeros((len(motion), 4)), np.full((len(motion) + 9, 17), np.nan)
+    whole.fill_peaks(motion, peaks)
+    s, y, out = case(), upright(body), np.zeros(whole.OUTCOME)
+    whole.integrate(body, motion, peaks, 1.0, dt, G, 5, 1e-8, 1e-6, y, history, out, s)
+    radius, alpha = math.hypot(half, height), math.atan2(half, height)
+    inertia = tensor[1, 1] + radius**2
+    time = dt * np.arange(len(motion) + 1)
+    ground = np.append(motion[:, 0], 0.0)
+
+    lifts = next(
+        t for t in np.linspace(0, 9, 90001) if np.interp(t, time, ground) >= G / 3
+    )
+    first = int(np.searchsorted(time, lifts, side="right"))
+    # Housner's ratio of a solid box
+    ratio = 1 - 1.5 * math.sin(alpha) ** 2
+    known, start, spin, side = np.zeros(len(motion)), lifts, 0.0, 1.0
+    while start < time[-2]:
+
+        def housner(t, x, side=side):
+            """About the edge that it stands on, by the ground's acceleration towards that."""
+            off, a = alpha - x[0], side * np.interp(t, time, ground)
+            turn = radius * (a * math.cos(off) - G * math.sin(off)) / inertia
+            return x[1], turn
+
+        def lands(t, x, start=start):
+            return x[0] + (t == start)
+
+        lands.terminal, lands.direction = True, -1
+        found = solve_ivp(
+            housner, (start, time[-2]), (0, spin), "DOP853", events=lands,
+            rtol=1e-11, atol=1e-13, dense_output=True, max_step=dt / 2,
+        )  # fmt: skip
+        inside = (time[:-1] > start) & (time[:-1] <= found.t[-1])
+        known[inside] = side * found.sol(time[:-1][inside])[0]
+        start, side = found.t[-1], -side
+        spin = -ratio * found.y[1, -1]
+    up = np.array([attitude(row)[2] for row in history[: len(motion)]])
+    tilt = np.arctan2(up[:, 0], up[:, 2])
+    assert tilt[:first] == pytest.approx(0, abs=1e-15)
+    if at_rest:
+        assert (history[:first, 14] == whole.RESTS).all()
+    assert tilt == pytest.approx(known * np.sign(tilt[first] * known[first]), abs=1e-6)
+    assert {1.0, -1.0} <= set(np.sign(known))
+    assert np.isfinite(history[:, 0]).sum() >= len(motion)
+    assert out[whole.STEPS] >= len(motion) - first
+    assert out[whole.PEAK_TILT] == pytest.approx(np.abs(known).max(), rel=0.02)

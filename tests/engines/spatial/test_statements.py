@@ -339,6 +339,7 @@ def test_a_body_is_beyond_its_balance_where_its_centre_leaves_the_base():
         for part in (0.99, 1.01):
             y = leaning(body, part * critical, towards)
             assert whole.is_beyond(body, y) == (part > 1)
+            assert whole.stands_within_balance(body, rotation(y)) == (part < 1)
             out = np.zeros(whole.OUTCOME)
             whole.note_peaks(body, y, attitude(y), out)
             assert out[whole.PEAK_RATIO] == pytest.approx(part)

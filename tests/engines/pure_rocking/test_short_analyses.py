@@ -1,0 +1,148 @@
+"""Short analyses, alone and in ensembles, beside the plain integrator, which shares only the bodies with them.
+
+They are short enough for kernels that run as plain Python. What begins a long chatter is cut off.
+"""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from rockfrag import Block, Stack, overturns, simulate
+
+from ...oracle.rocking_integrator import simulate_reference
+
+# bodies that the ground may lift off are held by pure rocking
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::rockfrag.simulation.ensemble.LightBodies",
+    "ignore::rockfrag.simulation.inputs.UnitWarning",
+)
+
+DT, TIMES = 0.02, 4
+LONE = (
+    (Block(0.5, 1.5, 700.0), None),
+    # two pivots, a measured ratio
+    (Block(0.4, 1.3, 300.0, cg_offset=0.02, lean=0.01), 0.8),
+)
+PILES = (
+    (Stack(Block(0.6, 0.6, 800.0), Block(0.4, 1.2, 300.0)), None),
+    # a slender pedestal falls with what stands on it
+    (Stack(Block(0.3, 1.5, 360.0), Block(0.25, 0.4, 70.0, cg_offset=0.01)), None),
+)
+
+
+def motions():
+    """A pulse that grows at once and dies down, and one upwards of another period."""
+    time = np.arange(60) * DT
+    fades = np.minimum(1, time / 0.1) * np.exp(-2.0 * np.maximum(0, time - 0.7))
+    level, lift = (np.sin(2 * np.pi * time / period) * fades for period in (0.9, 0.31))
+    level[-1] = lift[-1] = 0.0
+    return level, 0.25 * lift
+
+
+@cache
+def exact(number, piles, scale, upward):
+    """Response of the plain integrator while the ground moves, at samples four times as dense."""
+    body, restitution = (PILES if piles else LONE)[number]
+    level, lift = motions()
+    at = np.arange((level.size - 1) * TIMES + 1) / TIMES
+    level, lift = (np.interp(at, np.arange(level.size), each) for each in (level, lift))
+    return simulate_reference(
+        body,
+        scale * level,
+        DT / TIMES,
+        restitution=restitution,
+        vertical=scale * lift if upward else None,
+        duration=DT * 59,
+    )
+
+
+def critical(body):
+    """Critical angle of each body about its right and its left pivot."""
+    return [
+        (each.critical_angle(1), each.critical_angle(-1))
+        for each in ((body.lower, body.upper) if isinstance(body, Stack) else (body,))
+    ]
+
+
+@pytest.mark.parametrize(
+    ("piles", "scale", "upward"),
+    [
+        (False, 4.0, False),
+        (False, 4.0, True),
+        (False, 5.5, True),
+        (True, 5.5, False),
+        (True, 5.5, True),
+    ],
+)
+def test_one_analysis_is_that_of_the_plain_integrator(piles, scale, upward):
+    body, restitution = (PILES if piles else LONE)[1]
+    level, lift = motions()
+    lift = scale * lift if upward else None
+    found = simulate(
+        body,
+        scale * level,
+        DT,
+        restitution=restitution,
+        vertical=lift,
+    )
+    known = exact(1, piles, scale, upward)
+    assert found.overturned or not known.overturned
+    theta = known.theta[::TIMES]
+    n = min(len(theta), len(found.theta))
+    upright = np.abs(theta[:n]).max(axis=1) < 0.5
+    assert np.abs(theta).max() > 0.01
+    assert found.theta[:n][upright] == pytest.approx(theta[:n][upright], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("piles", "scale", "upward", "expected"),
+    [
+        (False, 4.0, False, {"rocks"}),
+        (False, 4.0, True, {"falls", "rocks"}),
+        (False, 5.5, False, {"falls"}),
+        (False, 7.0, True, {"falls", "rocks"}),
+        (True, 4.0, False, {"rocks"}),
+        (True, 4.0, True, {"rocks"}),
+        (True, 5.5, True, {"falls"}),
+    ],
+)
+def test_an_ensemble_has_the_outcomes_and_peaks_of_the_plain_integrator(
+    piles, scale, upward, expected
+):
+    level, lift = motions()
+    cases = PILES[:1] if piles else LONE
+    found = overturns(
+        [body for body, _ in cases],
+        level,
+        DT,
+        [scale],
+        restitution=[restitution for _, restitution in cases],
+        vertical=lift if upward else None,
+        threads=1,
+    )
+    told = set()
+    for i, (body, _) in enumerate(cases):
+        known, at = exact(i, piles, scale, upward), (i, 0, 0)
+        if known.overturned:
+            assert found.overturned[at]
+            # when that is certain the body still has some way to go
+            lasts = (len(known.time) - 1) * DT / TIMES
+            assert lasts - 1.5 < found.certain_time[at] <= lasts + DT
+        if found.overturned[at]:
+            told.add("falls")
+            continue
+        for k, (right, left) in enumerate(critical(body)):
+            # of the upper body beside the lower one
+            theta = known.theta[:, k]
+            peak = max(theta.max() / right, -theta.min() / left)
+            frequency = (body.lower if piles else body).frequency()
+            between = (frequency * DT) ** 2 / 4 + 1e-6
+            # hops of less are closed unseen; later peaks are lower where the ground's last ones are
+            if peak > 1e-3:
+                told.add("rocks")
+                assert found.peak_rotation[(*at, k)] >= peak - between
+                early = len(theta) * 2 // 3
+                if np.abs(theta[:early]).max() > 1.5 * np.abs(theta[early:]).max():
+                    assert found.peak_rotation[(*at, k)] <= peak + between
+    assert told == expected
