@@ -41,6 +41,7 @@ GROUPS = (
         ("engines/spatial", "engines/algebra"),
         plain=(
             "engines/spatial/test_events.py",
+            "engines/spatial/test_short_analyses.py",
             "engines/spatial/test_statements.py",
             "engines/spatial/test_stepping.py",
             "engines/spatial/test_steps_and_cones.py",
