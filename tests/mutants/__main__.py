@@ -61,6 +61,7 @@ GROUPS = (
     Group(
         ("engines/pure_rocking",),
         plain=(
+            "engines/pure_rocking/test_lanes.py",
             "engines/pure_rocking/test_short_analyses.py",
             "engines/pure_rocking/test_statements.py",
             "engines/pure_rocking/test_taylor.py",

@@ -1,0 +1,240 @@
+"""What lanes know of one state, beside the plain model of the oracle; when rest ends; and hops that are closed.
+
+Kernels are called one by one, as plain Python.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from ...mutants.plain import plain_library
+from .test_statements import (
+    STATES,
+    G,
+    chatter,
+    drawn_motion,
+    eq,
+    impact,
+    pivots,
+    plain,
+    stacks,
+    state_of,
+)
+
+with plain_library():
+    from rockfrag.engines.pure_rocking.kernels.lanes import case as cases
+    from rockfrag.engines.pure_rocking.kernels.lanes import (
+        stack_constants,
+        stack_one,
+    )
+
+H = 0.004  # interval of the samples [s]
+
+
+def constants_of(body, h=H):
+    """What lanes know of the nine contact states of a body."""
+    made = [
+        np.zeros(9, kind).view(np.recarray)
+        for kind in (stack_constants.ONE, stack_constants.TWO, stack_constants.IMPACT)
+    ]
+    scratch = state_of((0, 0), (0, 0), (0, 0))
+    stack_constants.fill_constants(body, h, *made, scratch)
+    return made
+
+
+def test_what_turns_alone_holds_the_other_contact_as_the_plain_model_says():
+    for rng, body, model in stacks(21, 12):
+        one, _, _ = constants_of(body)
+        for c in [c for c in STATES if 0 in c]:
+            theta, omega = drawn_motion(rng, c)
+            weight, ground = rng.uniform(0.5, 1.5), rng.normal(0, 3)
+            pull = (ground, weight * G)
+            margins = model.margins(c, theta, omega, pull)
+            shut = c.index(0)
+            unit = model.weight[shut] * abs(model.half[shut])
+            expected = min(margins[shut, s] for s in (1, -1)) * unit * H**2
+            at = one[eq.number_of(*c)]
+            turn = theta[1] if shut == 0 else theta[0]
+            rate = omega[1] if shut == 0 else omega[0]
+            found = stack_one.least_hold(at, turn, rate * H, (ground, weight), G)
+            assert found == pytest.approx(expected, rel=1e-6, abs=1e-9 * unit * H**2)
+            # how near balance: of the critical angle, and of its speed
+            critical, vx, vy, inertia = eq.balance(body, *c)
+            frequency = math.sqrt(G * math.hypot(vx, vy) / inertia)
+            side = c[0] + c[1]
+            assert at.per_angle == pytest.approx(side / critical)
+            speed = 1.0 / (critical * frequency * H) ** 2
+            assert at.per_speed == pytest.approx(speed)
+
+
+def test_the_landing_of_what_turns_alone_is_the_impact_of_unit_speed():
+    for _, body, model in stacks(22, 10):
+        _, _, impacts = constants_of(body)
+        for c in [c for c in STATES if 0 in c]:
+            at = impacts[eq.number_of(*c)]
+            # towards the ground, at a unit of speed
+            omega = np.array([-1.0 * c[0], -1.0 * (c[0] + c[1])])
+            state = state_of(c, (0, 0), omega)
+            found = impact.impact(body, state, c[0] != 0, c[1] != 0)
+            assert (at.next1, at.next2) == found[:2]
+            assert (at.after1, at.after2) == pytest.approx(found[2:4])
+            before = model.kinetic_energy(c, np.zeros(2), omega)
+            after = model.kinetic_energy(
+                (at.next1, at.next2), np.zeros(2), np.array([at.after1, at.after2])
+            )
+            assert at.fraction == pytest.approx(math.sqrt(after / before))
+            assert at.fraction <= 1.0
+
+
+def test_extremes_of_a_lane_are_those_of_the_phase_plane():
+    lane = plain(np.zeros(1, stack_one.LANE)[0])
+    lane.per_angle[2], lane.per_speed[2] = -1 / 0.3, 4.0
+    lane.was_ratio[2], lane.was_fast[2], lane.was_near[2] = 0.1, 0.05, 2.0
+    ratio, fast, near = stack_one.nearest(lane, 2, -0.15, 0.2)
+    assert (ratio, fast, near) == pytest.approx((0.5, 0.2, 0.25 + 4.0 * 0.04))
+    lane.was_ratio[2], lane.was_fast[2], lane.was_near[2] = 0.7, 0.3, 0.1
+    assert stack_one.nearest(lane, 2, -0.15, 0.2) == pytest.approx((0.7, 0.3, 0.1))
+
+
+def hop_of(rng, c, contact, speed):
+    """A contact that has come down on its other side and off again while the other one is open."""
+    theta, omega = drawn_motion(rng, c)
+    # where it touches: the pedestal stands, or both are turned alike
+    theta = np.array([0.0, theta[1]]) if contact == 0 else np.full(2, theta[0])
+    omega = H * np.array(omega)
+    # it opens to its side
+    if contact == 0:
+        omega[0] = speed * c[0]
+    else:
+        omega[1] = omega[0] + speed * c[1]
+    hop = chatter.Hop(
+        contact == 0,
+        c[contact],
+        -1.6 * speed,
+        math.cos(theta[1]),
+        math.sin(theta[1]),
+        *omega,
+    )
+    return hop, theta, omega
+
+
+@pytest.mark.parametrize("upward", [0.0, 0.02])
+@pytest.mark.parametrize("contact", [0, 1])
+def test_hops_of_a_geometric_series_are_closed_if_it_ends_in_time(contact, upward):
+    """T = 3 v (1/D + b/D') / (1 - l), with accelerations by Newton's laws on either side of the contact."""
+    told = set()
+    for rng, body, model in stacks(23, 25):
+        _, two, _ = constants_of(body)
+        for c in [c for c in STATES if 0 not in c]:
+            hop, theta, omega = hop_of(rng, c, contact, 1e-5 * H)
+            old = tuple(-s if k == contact else s for k, s in enumerate(c))
+            weight, ground = 1.0 + upward, rng.normal(0, 0.5)
+            opens, parts = [], []
+            for state in (c, old):
+                # rates by the second, as the model counts
+                alpha = model.accelerations(
+                    state, theta, omega / H, (ground, weight * G)
+                )
+                relative = -alpha[0] if contact == 0 else -(alpha[1] - alpha[0])
+                opens.append(state[contact] * relative * H**2)
+                mass, _ = model.terms(pivots(state), theta, 0 * omega, (0.0, G))
+                # inertia of the relative turn while the other momentum stays
+                if contact == 0:
+                    parts.append(np.linalg.det(mass) / mass[1, 1])
+                else:
+                    parts.append(np.linalg.det(mass) / mass.sum())
+            samples = np.full(60, ground)
+            lift = np.full(60, upward) if upward else np.zeros(0)
+            ahead = chatter.Ahead(samples, lift, 1.0, 59, 3, 0.4, H)
+            before = two[eq.number_of(*old)]
+            after = two[eq.number_of(*c)]
+
+            def closes(longest, hop=hop, before=before, after=after, ahead=ahead):
+                return chatter.may_close(hop, before, after, longest, G, ahead)
+
+            e = 1 / 1.6
+            left = e * e * parts[0] / parts[1]
+            if min(opens) <= 0 or left > 0.98:
+                told.add("stays open")
+                assert not closes(1e9)
+                continue
+            lasts = 3 * 1e-5 * H * (1 / opens[0] + left / e / opens[1]) / (1 - left)
+            if lasts > 0.02 / H:
+                continue
+            told.add("closes")
+            assert closes(1.001 * lasts)
+            assert not closes(0.999 * lasts)
+            # the ground that pulls it open comes within the time, twice over
+            samples[4:] = 1e4
+            later = closes(1e9)
+            samples[4:] = -1e4
+            assert not (later and closes(1e9))
+            # closed, the momentum of what rocks on stays
+            rates = np.array(chatter.closed(hop, after))
+            mass, _ = model.terms(pivots(c), theta, 0 * omega, (0.0, G))
+            if contact == 0:
+                assert rates[0] == 0.0
+                assert mass[1, 1] * rates[1] == pytest.approx(mass[1] @ omega)
+            else:
+                assert rates[0] == rates[1]
+                assert mass.sum() * rates[0] == pytest.approx(mass.sum(axis=0) @ omega)
+    assert told == {"stays open", "closes"}
+
+
+@pytest.mark.parametrize("upward", [False, True])
+@pytest.mark.parametrize("factor", [1.0, -0.7])
+def test_rest_ends_where_the_ground_leaves_what_the_weight_can_hold(factor, upward):
+    rng, seen = np.random.default_rng(24), set()
+    for _ in range(40):
+        count = 4 * cases.BLOCK
+        samples = rng.normal(0, 1.0, count) * np.linspace(
+            0.1, rng.uniform(0.5, 2), count
+        )
+        samples[-1] = 0.0
+        vertical = 0.2 * rng.normal(size=count) if upward else np.zeros(0)
+        blocks = samples.reshape(-1, cases.BLOCK)
+        up = vertical.reshape(-1, cases.BLOCK)
+
+        def ends(each, what):
+            found = [what(block, initial=0.0) for block in each]
+            accumulate = np.maximum if what is np.max else np.minimum
+            return np.array(found), accumulate.accumulate(found[::-1])[::-1]
+
+        high, ahead_high = ends(blocks, np.max)
+        low, ahead_low = ends(blocks, np.min)
+        _, up_high = ends(up, np.max) if upward else (0, np.zeros(4))
+        _, up_low = ends(up, np.min) if upward else (0, np.zeros(4))
+        motions = cases.Motions(
+            samples, vertical, high, low, ahead_high, ahead_low, up_high, up_low,
+            np.array([0, count]), np.array([count - 1]),
+        )  # fmt: skip
+        least, most = -1.1, 1.4
+        k, tau = int(rng.integers(0, 30)), rng.uniform(0, 1)
+        fine = np.linspace(0, 1, 400)
+        first = None
+        for j in range(k, count - 1):
+            for part in fine if j > k else fine[fine >= tau]:
+                a = factor * (samples[j] + part * (samples[j + 1] - samples[j]))
+                w = 1.0
+                if upward:
+                    w += factor * (vertical[j] + part * (vertical[j + 1] - vertical[j]))
+                if not least * w <= a <= most * w:
+                    first = j + part
+                    break
+            if first is not None:
+                break
+        at, part, ground, weight = cases.next_uplift(
+            motions, k, tau, count - 1, factor, (least, most)
+        )
+        if first is None:
+            assert at == -1
+            seen.add("stays")
+            continue
+        assert at + part == pytest.approx(max(first, k + tau), abs=1 / 300)
+        if at + part > k + tau + 1e-6:
+            assert ground == pytest.approx(weight * (most if ground > 0 else least))
+            seen.add("leaves")
+        else:
+            seen.add("at once")
+    assert {"stays", "leaves"} <= seen
