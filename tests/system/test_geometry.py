@@ -220,3 +220,24 @@ def test_a_statue_stands_where_its_centre_is_over_what_it_touches(offset, aside,
         beyond = max(0.0, pivot * offset + 0.15 - 0.3)
         if why != geometry.BESIDE:
             assert geometry.overhang(pile, pivot) == pytest.approx(beyond, abs=1e-15)
+
+
+@pytest.mark.parametrize("pivot", [1, -1])
+def test_what_lanes_know_of_a_pivot_is_its_critical_angle_and_frequency(pivot):
+    shape = geometry.Shape(0.3, 50.0, 4.0, 0.05, 0.8)
+    # from the corner to the centre of gravity
+    aside, up = 0.3 - pivot * 0.05, 0.8
+    length = math.hypot(aside, up)
+    swing = 50.0 * 9.81 * length / (4.0 + 50.0 * length**2)
+    alpha = math.atan2(aside, up)
+    expected = (
+        alpha,
+        aside / up,
+        aside / length,
+        up / length,
+        swing,
+        0.9,
+        1 / alpha,
+        1 / (swing * alpha**2),
+    )
+    assert geometry.pivot_constants(shape, pivot, 0.9, 9.81) == pytest.approx(expected)

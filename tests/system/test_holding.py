@@ -101,3 +101,9 @@ def test_outcomes_have_a_row_for_all_that_holds_and_none_where_nothing_does():
     assert limit_state_named("leans").reached(found).sum() == 1
     assert not limit_state_named("leans").counted(as_system(BLOCK))
     assert limit_state_named("leans").counted(hold(as_system(BLOCK), Wall(1.0)))
+
+
+def test_one_bond_is_that_of_the_uppermost_contact_and_others_keep_theirs():
+    below, above = Bond(50.0, 5.0, 0.2), Bond(20.0, 2.0, 0.1)
+    held = hold(hold(as_system(STACK), bonds=[below, None]), bonds=above)
+    assert [contact.bond for contact in held.contacts] == [below, above]
