@@ -24,16 +24,10 @@ GROUPS = (
     Group(
         ("engines/planar",),
         plain=(
-            "engines/planar/test_bonds.py",
-            "engines/planar/test_closed_forms.py",
-            "engines/planar/test_images.py",
-            "engines/planar/test_laws.py",
             "engines/planar/test_routh.py",
             "engines/planar/test_search.py",
+            "engines/planar/test_short_analyses.py",
             "engines/planar/test_statements.py",
-            "engines/planar/test_support.py",
-            "engines/planar/test_ties.py",
-            "engines/planar/test_walls.py",
         ),
         compiled=("engines/planar", "engines/test_contract.py"),
     ),
@@ -90,7 +84,7 @@ GROUPS = (
             "simulation/test_shapes.py",
         ),
     ),
-    Group(("assess",), plain=(), compiled=("assess",)),
+    Group(("assess",), plain=("assess/core",), compiled=("assess",)),
     Group(("fragility",), plain=(), compiled=("fragility",)),
 )
 """What is changed, and the tests that are asked: of kernels first those that are quick as plain Python."""
