@@ -915,6 +915,26 @@ def test_the_error_of_a_step_about_a_contact_is_the_difference_of_the_pair():
             assert found == pytest.approx(worst * max(1, 2 * p), rel=1e-4)
 
 
+@pytest.mark.parametrize("place", range(7))
+def test_each_number_that_turns_has_its_part_in_the_error_of_a_step(place):
+    """The attitude as it is, angular velocities over their size, both as far as the contact's arm takes them."""
+    rng = np.random.default_rng(33)
+    body, s = uneven(rng), case()
+    mode(s, 2)
+    before, off = rng.normal(size=7), np.zeros(7)
+    before[:4] /= np.linalg.norm(before[:4])
+    off[place] = -0.7
+    scale = 1.0 if place < 4 else 1.0 + abs(before[place])
+    arm = max(1.0, 2 * np.linalg.norm(point(body, 2)))
+    along = (0.0, 0.0, 9.0)
+    found = pivot.error_of(body, tuple(before), tuple(off), along, s)
+    assert found == pytest.approx(0.7 / scale * arm)
+    # where the body goes counts too, its work does not
+    for went in ((3.0, 0.0, 0.0), (0.0, -3.0, 0.0)):
+        found = pivot.error_of(body, tuple(before), tuple(off), went, s)
+        assert found == pytest.approx(3.0 * arm)
+
+
 def test_both_ways_of_stopping_an_edge_share_its_impulse_alike():
     """In closed form about the edge, and as one set of all sets of cones."""
     rng, both = np.random.default_rng(31), 0
