@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from ...mutants.plain import plain_library
-from .test_statements import (
+from ...oracle.rocking_model import pivots
+from ..planar.cases import G
+from .plain_rocking import (
     STATES,
-    G,
     chatter,
     drawn_motion,
     eq,
     impact,
-    pivots,
     plain,
     stacks,
     state_of,
