@@ -44,7 +44,7 @@ def constants_of(body, h=H):
 
 
 def test_what_turns_alone_holds_the_other_contact_as_the_plain_model_says():
-    for rng, body, model in stacks(21, 12):
+    for rng, body, model in stacks(21, 6):
         one, _, _ = constants_of(body)
         for c in [c for c in STATES if 0 in c]:
             theta, omega = drawn_motion(rng, c)
@@ -124,7 +124,7 @@ def hop_of(rng, c, contact, speed):
 def test_hops_of_a_geometric_series_are_closed_if_it_ends_in_time(contact, upward):
     """T = 3 v (1/D + b/D') / (1 - l), with accelerations by Newton's laws on either side of the contact."""
     told = set()
-    for rng, body, model in stacks(23, 25):
+    for rng, body, model in stacks(23, 12):
         _, two, _ = constants_of(body)
         for c in [c for c in STATES if 0 not in c]:
             hop, theta, omega = hop_of(rng, c, contact, 1e-5 * H)
@@ -186,10 +186,10 @@ def test_hops_of_a_geometric_series_are_closed_if_it_ends_in_time(contact, upwar
 @pytest.mark.parametrize("factor", [1.0, -0.7])
 def test_rest_ends_where_the_ground_leaves_what_the_weight_can_hold(factor, upward):
     rng, seen = np.random.default_rng(24), set()
-    for _ in range(40):
+    for _ in range(24):
         count = 4 * cases.BLOCK
         samples = rng.normal(0, 1.0, count) * np.linspace(
-            0.1, rng.uniform(0.5, 2), count
+            0.1, rng.uniform(0.1, 1.5), count
         )
         samples[-1] = 0.0
         vertical = 0.2 * rng.normal(size=count) if upward else np.zeros(0)
@@ -211,7 +211,7 @@ def test_rest_ends_where_the_ground_leaves_what_the_weight_can_hold(factor, upwa
         )  # fmt: skip
         least, most = -1.1, 1.4
         k, tau = int(rng.integers(0, 30)), rng.uniform(0, 1)
-        fine = np.linspace(0, 1, 400)
+        fine = np.linspace(0, 1, 100)
         first = None
         for j in range(k, count - 1):
             for part in fine if j > k else fine[fine >= tau]:
@@ -231,7 +231,7 @@ def test_rest_ends_where_the_ground_leaves_what_the_weight_can_hold(factor, upwa
             assert at == -1
             seen.add("stays")
             continue
-        assert at + part == pytest.approx(max(first, k + tau), abs=1 / 300)
+        assert at + part == pytest.approx(max(first, k + tau), abs=1 / 80)
         if at + part > k + tau + 1e-6:
             assert ground == pytest.approx(weight * (most if ground > 0 else least))
             seen.add("leaves")

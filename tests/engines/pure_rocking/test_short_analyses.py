@@ -78,10 +78,8 @@ def critical(body):
 @pytest.mark.parametrize(
     ("piles", "scale", "upward"),
     [
-        (False, 4.0, False),
         (False, 4.0, True),
         (False, 5.5, True),
-        (True, 5.5, False),
         (True, 5.5, True),
     ],
 )
