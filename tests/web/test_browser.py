@@ -520,7 +520,7 @@ def test_a_body_at_a_wall_or_on_wax_has_the_bits_of_the_package(tmp_path):
     ("name", "largest"),
     [
         ("integrate", 60_000),
-        ("space", 165_000),
+        ("space", 156_000),
         ("plane", 165_000),
         ("ensemble", 270_000),
         ("ensemble-fused", 132_000),
