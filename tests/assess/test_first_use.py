@@ -89,9 +89,9 @@ def test_what_is_seen_first_has_an_answer(default_records, settings):
     request = asked(**settings)
     motions = motion_set(Records(), request.place, default_records)
     found = assess_with(request, motions, brief=True)
-    verdict, *_, to_do = lines_of(found)
-    assert "likely to topple" in verdict or "does not rock" in verdict
-    assert found.main.upper - found.main.lower < 0.5, verdict
+    answer, *_, to_do = lines_of(found)
+    assert "likely to topple" in answer or "does not rock" in answer
+    assert found.main.upper - found.main.lower < 0.5, answer
     assert to_do.startswith(("Leave it", "Secure it", "Measure first"))
 
 

@@ -87,6 +87,15 @@ def case():
     return s
 
 
+def shaken(rng, size=2.0):
+    """Memory of an analysis on ground that moves, with accelerations and rises of a size."""
+    s = case()
+    s.field[:6] = rng.normal(0, size, 6)
+    s.field[2] -= G
+    s.close = modes.CLOSE
+    return s
+
+
 def attitude(y):
     """Rotation matrix, world from body, of the quaternion."""
     w, v = y[3], y[4:7]

@@ -36,6 +36,7 @@ from .plain_space import (
     point,
     rotation,
     set_down,
+    shaken,
     solid,
     state,
     step,
@@ -51,15 +52,6 @@ with plain_library():
 
 DT = 0.01
 CORNERS = np.array(OUTLINE) - (0.03, -0.02)
-
-
-def shaken(rng, size=2.0):
-    """Memory of an analysis on ground that moves."""
-    s = case()
-    s.field[:6] = rng.normal(0, size, 6)
-    s.field[2] -= G
-    s.close = modes.CLOSE
-    return s
 
 
 def upright(body, turn=0.0, x=0.0, z=0.0):

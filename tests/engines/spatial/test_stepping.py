@@ -13,13 +13,13 @@ from .plain_space import (
     Tie,
     Wall,
     attitude,
-    case,
     forces,
     inverse_mass,
     jacobian,
     modes,
     point,
     rotation,
+    shaken,
     solid,
     state,
     uneven,
@@ -29,14 +29,6 @@ with plain_library():
     from rockfrag.engines.spatial import _stepping as stepping
 
 TAU, DT = 0.003, 0.01
-
-
-def shaken(rng):
-    """Memory of an analysis on ground that moves."""
-    s = case()
-    s.field[:6] = rng.normal(0, 2, 6)
-    s.field[2] -= G
-    return s
 
 
 def gravity_at(s, tau):

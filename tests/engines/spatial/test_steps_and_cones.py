@@ -29,6 +29,7 @@ from .plain_space import (
     point,
     rotation,
     set_down,
+    shaken,
     solid,
     state,
     step,
@@ -54,9 +55,7 @@ MODES = {
 def in_mode(rng, name):
     """A body in a mode, in a state that obeys it, on ground that moves."""
     closed, slides = MODES[name]
-    body, s = uneven(rng), case()
-    s.field[:6] = rng.normal(0, 2, 6)
-    s.field[2] -= G
+    body, s = uneven(rng), shaken(rng)
     y = state(rng, body)
     y[7:10] *= 3
     mode(s, *closed)
