@@ -31,6 +31,20 @@ def read_building(path: str | os.PathLike[str]) -> model.ShearBuilding:
     return make_building(read_yaml(path), str(path))
 
 
+def read_floors(path: str | os.PathLike[str]) -> dict[str, int]:
+    """Read which floors a building's file names; what else it says is not judged.
+
+    Parameters
+    ----------
+    path : of the file
+
+    Returns
+    -------
+    Level of each floor by its label, 0 for the ground.
+    """
+    return _floors(checked(read_yaml(path), "building", str(path)))
+
+
 def make_building(settings: Any, source: str = "building") -> model.ShearBuilding:
     """Make a building from a mapping such as ``config/building.yaml`` holds.
 
@@ -51,7 +65,7 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
     """A building of checked keys, whose numbers must be those of a building."""
     heights, masses = settings["storey_heights_m"], settings["masses_kg"]
     _check_storeys(heights, masses)
-    distinct_file_names(settings.get("floors", {}))
+    distinct_file_names(_floors(settings))
     if "first_period_s" in settings:
         stiffnesses = model.stiffnesses_for_period(
             masses, heights, settings["first_period_s"]
@@ -69,7 +83,7 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
         heights=heights,
         stiffnesses=stiffnesses,
         damping=damping,
-        floors=settings.get("floors", {"ground": 0}),
+        floors=_floors(settings),
         model=settings.get("model", "elastic"),
         masonry=MasonryLaw(**settings.get("masonry", {})),
         name=settings.get("name", "building"),
@@ -78,6 +92,11 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
     stated = "first_period_s" in settings
     _check_period(building, "first_period_s" if stated else "storey_stiffnesses_N_m")
     return building
+
+
+def _floors(settings: Mapping[str, Any]) -> dict[str, int]:
+    """Level of each floor of interest by its label: the ground, where checked keys name none."""
+    return dict(settings.get("floors", {"ground": 0}))
 
 
 def _check_storeys(heights: Sequence[float], masses: Sequence[float]) -> None:

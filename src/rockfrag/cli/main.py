@@ -130,13 +130,19 @@ def make_parser() -> argparse.ArgumentParser:
 def _check_config(options: argparse.Namespace) -> int:
     """Run ``check-config``: say what a study will do, and what looks wrong with it."""
     from rockfrag.stages.running import results_folder
-    from rockfrag.study.loading import check_records, check_tables, load_any
+    from rockfrag.study.loading import (
+        check_building,
+        check_records,
+        check_tables,
+        load_any,
+    )
     from rockfrag.study.study import Study
 
     study = load_any(options.file)
     folder = results_folder(study)
     check_tables(study)
     if isinstance(study, Study):
+        check_building(study)
         for quality_flag in (*study.quality_flags(), *check_records(study)):
             print(f"warning: {quality_flag}", file=sys.stderr)
     if not options.quiet:

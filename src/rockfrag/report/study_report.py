@@ -57,7 +57,7 @@ def _lead(results: StudyResults) -> str:
     """Sentence below the title: how many configurations, records and earthquakes."""
     study, records = results.study, results.records
     earthquakes = len({record.get("earthquake") for record in records})
-    floors = ", on the floors of a building" if study.building else ""
+    floors = ", on the floors of a building" if study.building_file else ""
     return (
         f"Rocking and overturning of {counted(len(study.configurations), 'configuration')} under "
         f"{counted(len(records), 'record')} of {counted(earthquakes, 'earthquake')}{floors}."

@@ -21,7 +21,7 @@ from rockfrag.runtime.lock import locked
 from rockfrag.runtime.processes import end_with
 from rockfrag.stages.job import Job
 from rockfrag.stages.log import logged
-from rockfrag.study.loading import AnyStudy, any_study, check_records
+from rockfrag.study.loading import AnyStudy, any_study, check_building, check_records
 from rockfrag.study.study import RECORDS_FOLDER, Study
 
 RESULTS = Path("results")
@@ -47,6 +47,7 @@ def prepared(
         isinstance(study, Study)
         and not (folder / "motions" / "records.parquet").exists()
     ):
+        check_building(study)
         check_records(study)
     return study, folder
 

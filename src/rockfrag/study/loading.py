@@ -16,7 +16,7 @@ from rockfrag.base.files import distinct_file_names, file_name, is_file
 from rockfrag.base.plausible import LARGEST_PEAK, peak_warning
 from rockfrag.base.units import GRAVITY
 from rockfrag.base.yaml_file import read_yaml
-from rockfrag.building.settings import read_building
+from rockfrag.building.settings import read_floors
 from rockfrag.config.plugins import plugins_asked
 from rockfrag.config.schema import checked
 from rockfrag.motions.processing import process
@@ -37,7 +37,13 @@ from rockfrag.study.heading import check_file, checked_steps, existing_file, hea
 from rockfrag.study.holding import read_isolators
 from rockfrag.study.scaling import LARGEST_FACTOR, too_weak
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
-from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
+from rockfrag.study.study import (
+    GROUND,
+    RECORDS_FOLDER,
+    Amplitudes,
+    FragilitySettings,
+    Study,
+)
 from rockfrag.words.sentences import listed
 
 AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
@@ -95,7 +101,7 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
             source, "motions.processing", motions.get("processing", ())
         ),
         building_file=building_file,
-        building=None if building_file is None else read_building(building_file),
+        floors={GROUND: 0} if building_file is None else read_floors(building_file),
         amplitudes=amplitudes,
         protocol_step_percent=float(content["protocol"]["step_percent"]),
         fragility=_fragility_of(content["fragility"]),
@@ -278,6 +284,16 @@ def check_tables(study: AnyStudy) -> None:
         read_campaign(study.tests, study.columns, study.measures, known)
 
 
+def check_building(study: Study) -> None:
+    """Read the building of a study, so that what is wrong with it is said before the first job.
+
+    Parameters
+    ----------
+    study : the study, with a building or without one
+    """
+    _ = study.building
+
+
 _FOUND: dict[tuple[object, ...], list[str]] = {}
 """What was found of the records as they are: a run is checked by itself and by Snakemake, in one process."""
 
@@ -349,7 +365,7 @@ def _quality_flags(study: Study, record: Motion) -> list[str]:
     """What is doubtful in a record: its unit, its drift, its strength."""
     ground = process(record, study.processing)
     found = [flag for flag in quality_flags(ground) if DRIFT in flag]
-    weak = "" if study.building else too_weak(study, [ground])
+    weak = "" if study.building_file else too_weak(study, [ground])
     if weak:
         found.append(f"will be left out: {weak}")
     unit_stated = record.provenance[0].get("unit_stated", False)
@@ -364,7 +380,7 @@ def _scaled_far(study: Study, records: Sequence[Motion]) -> list[str]:
     highest = float(study.amplitudes.values_g[-1]) * GRAVITY
     factors = {motion.name: highest / motion.pga for motion in records}
     far = {name: factor for name, factor in factors.items() if factor > LARGEST_FACTOR}
-    if not far or study.building is not None:
+    if not far or study.building_file is not None:
         return []
     farthest = max(far, key=far.__getitem__)
     return [

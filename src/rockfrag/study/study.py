@@ -7,6 +7,7 @@ In: what :mod:`rockfrag.study.loading` has read. Out: amplitudes [g], jobs, name
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.files import file_name
 from rockfrag.base.plausible import size_warning
 from rockfrag.building.model import ShearBuilding
+from rockfrag.building.settings import read_building
 from rockfrag.records.catalogue import own_records
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.shaketable.shaker import Shaker
@@ -83,9 +85,10 @@ class Study(Heading):
     catalogue: pd.DataFrame
     # Steps that each record goes through, in order
     processing: tuple[Mapping[str, Any], ...]
-    # Path of the building whose floors are shaken, and the building; None for ground motions alone
+    # Path of the building whose floors are shaken; None for ground motions alone
     building_file: Path | None
-    building: ShearBuilding | None
+    # Level of each floor that is shaken, by its label; 0 is the ground
+    floors: Mapping[str, int]
     # Paths of the tables of bodies, the second None where each block stands alone, and the blocks by name
     specimens_file: Path
     configurations_file: Path | None
@@ -173,10 +176,13 @@ class Study(Heading):
 
         return not self.vertical and any(map(in_page, self.configurations))
 
-    @property
-    def floors(self) -> dict[str, int]:
-        """Level of each floor that is shaken, by its label; 0 is the ground."""
-        return {GROUND: 0} if self.building is None else dict(self.building.floors)
+    @cached_property
+    def building(self) -> ShearBuilding | None:
+        """Building whose floors are shaken; None for ground motions alone.
+
+        Most stages need the labels of its floors alone, so its modes are solved for when it is first asked for.
+        """
+        return None if self.building_file is None else read_building(self.building_file)
 
     @property
     def body_files(self) -> list[str]:
