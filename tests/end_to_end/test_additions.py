@@ -68,6 +68,7 @@ def additions(monkeypatch):
     del _STATES["turns_far"]
 
 
+@pytest.mark.slow
 def test_one_declaration_each_reaches_the_report(additions, tmp_path):
     bodies = {"specimens": "blocks.csv", "configurations": "configurations.csv"}
     bodies |= {"restitution": {"law": "energy", "blocks": {"column": 0.8}}}

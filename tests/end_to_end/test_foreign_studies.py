@@ -38,7 +38,9 @@ def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
         assert not used or any(object_name in word for word in page.words)
 
 
-@pytest.mark.parametrize("number", (2, 12, 22))
+@pytest.mark.parametrize(
+    "number", [2, 22, *(pytest.param(n, marks=SLOW) for n in (7, 12, 17))]
+)
 def test_random_studies_end_with_a_report_or_are_refused_in_a_sentence(
     number, tmp_path
 ):

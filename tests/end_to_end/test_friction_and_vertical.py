@@ -25,6 +25,7 @@ def table(results: Path, name: str) -> pd.DataFrame:
     return pd.read_parquet(results / f"{name}.parquet")
 
 
+@pytest.mark.slow
 def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(tmp_path):
     amplitudes = {"lowest_g": 0.2, "highest_g": 1.2, "step_percent": 20}
     content = {"friction": 0.3, "amplitudes": amplitudes}

@@ -226,6 +226,7 @@ rolling,vase,,,free
 """
 
 
+@pytest.mark.slow
 def test_a_study_of_what_holds_an_object_goes_on_to_its_report(tmp_path):
     """It ended at forces, at slips, at a state that not all reach, and at tests that were the same."""
     blocks = {"vase": (30, 90, 80), "plinth": (50, 40, 200)}

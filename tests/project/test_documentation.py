@@ -253,6 +253,7 @@ def typed(checkout):
     return run
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     os.name == "nt", reason="make and symbolic links are those of POSIX"
 )

@@ -153,6 +153,7 @@ def test_two_runs_write_the_same_bytes_whatever_the_number_of_cores(study_folder
     assert runs[0] == runs[1]
 
 
+@pytest.mark.slow
 def test_a_study_may_go_on_without_what_is_damaged_and_says_so(
     study_folder, monkeypatch, capsys
 ):
@@ -212,6 +213,7 @@ def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
     ).stat().st_size > 1000
 
 
+@pytest.mark.slow
 def test_a_home_that_may_not_be_written_is_none_of_a_study_s_concern(tmp_path: Path):
     write_synthetic(tmp_path)
     write_example(tmp_path, "synthetic.csv", replicates=20)
@@ -280,7 +282,11 @@ def test_snakemake_finds_nothing_to_mend():
 
 
 @pytest.mark.parametrize(
-    ("config", "inside"), [("config", False), ('config["overturning"]', True)]
+    ("config", "inside"),
+    [
+        ("config", False),
+        pytest.param('config["overturning"]', True, marks=pytest.mark.slow),
+    ],
 )
 def test_another_workflow_takes_the_rules_with_a_prefix(study_folder, config, inside):
     content = study_content()

@@ -79,7 +79,7 @@ LENGTH = 3.2
 @pytest.mark.parametrize(
     ("bodies", "cases", "seed", "least"),
     [
-        *((1, 4, 20, 2), (2, 4, 20, 2), (3, 1, 6, 1)),
+        *((1, 2, 20, 1), (2, 2, 20, 1)),
         *(pytest.param(n, 60, 21, 30, marks=pytest.mark.slow) for n in (1, 2)),
         pytest.param(3, 3, 6, 2, marks=pytest.mark.slow),
     ],
@@ -146,10 +146,10 @@ def beside_stepping(cases: list[Case], step: float) -> pd.DataFrame:
 @pytest.mark.parametrize(
     ("bodies", "seed", "step", "differing", "falls"),
     [
-        ((1, 2), 31, 5e-6, 0, (0, 2)),
         ((1,) * 8, 25, 1e-4, 1, (1, 7)),
         ((2,) * 5, 25, 1e-4, 1, (1, 4)),
         ((3,) * 6, 7, 2e-4, 1, (1, 5)),
+        pytest.param((1, 2), 31, 5e-6, 0, (0, 2), marks=pytest.mark.slow),
         pytest.param((1,) * 200, 23, 2e-5, 6, (20, 180), marks=pytest.mark.slow),
         pytest.param((2,) * 200, 23, 2e-5, 6, (20, 180), marks=pytest.mark.slow),
         pytest.param((3, 4) * 100, 8, 2e-4, 4, (50, 150), marks=pytest.mark.slow),

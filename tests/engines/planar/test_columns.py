@@ -105,6 +105,7 @@ def test_the_energy_balance_of_a_column_closes(bodies, columns):
         assert imbalance(run(column, motion, vertical=up)) < 2e-8
 
 
+@pytest.mark.slow
 def test_sliding_that_jams_between_a_light_and_heavy_bodies_keeps_the_energy_balance():
     rng = np.random.default_rng(12)
     column, motion, up = [shaken_column(rng, 12) for _ in range(13)][-1]
