@@ -3,13 +3,14 @@
 import json
 import math
 import re
+from dataclasses import replace
 from html import unescape
 
 import numpy as np
 import pytest
 
 from rockfrag import Block, overturns
-from rockfrag.assess import holding
+from rockfrag.assess import findings, holding
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.export import as_json
 from rockfrag.assess.findings import details_of, lines_of
@@ -297,6 +298,28 @@ def test_where_it_stands_names_what_holds_it(name):
     said = catalogue().say(both.where)
     assert said.startswith("on level 1 of 3 with wax or putty")
     assert english in said
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"wall": "10.5 cm"}, "a wall 10.5 cm behind it"),
+        ({"putty": "123 N"}, "a pull of 123 N"),
+        ({"isolator": "17.5 cm"}, "17.5 cm to each side"),
+    ],
+)
+def test_what_is_stated_is_said_as_it_was_stated(settings, said):
+    """A wall 10.5 cm behind it was called 10 cm away."""
+    request = asked(**BOX, pga="0.3 g", **settings)
+    (holder,) = request.objects.under.holders
+    assert said in catalogue().say(holder.called())
+
+
+def test_a_limit_that_is_shown_to_help_is_not_said_to_be_zero(few):
+    found = assess_with(asked(**BOX, pga="0.6 g"), few, holders=False)
+    little = replace(found.changes[0], factor=0.97, lower=0.94, upper=0.998, shown=True)
+    said = catalogue().say(findings.mitigation(found, little))
+    assert said.endswith(": 3 % less risk (0.2 to 6 %).")
 
 
 def test_the_first_sentence_at_every_door_names_what_holds_it(few):

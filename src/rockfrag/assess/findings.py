@@ -76,6 +76,7 @@ TEXTS: Mapping[Callable[..., int], tuple[str, ...]] = {
         *(Text.CELL_UNKNOWN, Text.CELL_BEARS_LESS, Text.CELL_INCREASES),
         *(Text.CELL_NONE_LEFT, Text.CELL_BEARS_OPEN, Text.CELL_REDUCES_OPEN),
         *(Text.CELL_BEARS_MORE, Text.CELL_REDUCES, Text.CELL_REDUCES_NEARLY_ALL),
+        Text.CELL_SAME,
     ),
     choices.safest: (Text.SAFEST, Text.NO_SAFEST),
 }
@@ -439,8 +440,7 @@ def _reduction(change: Mitigation) -> dict[str, Value]:
     found = np.zeros(3)
     choices.tell_reduction(change.factor, change.lower, change.upper, found)
     value, lower, upper = found.tolist()
-    limits = {"lower": whole(100 * lower), "upper": whole(100 * upper)}
-    return {"value": percent(value), **limits}
+    return {"value": percent(value), "lower": limit(lower), "upper": limit(upper)}
 
 
 def _nearly_all(change: Mitigation) -> dict[str, Value]:
@@ -467,7 +467,7 @@ def mitigation_cell(found: Assessment, change: Mitigation) -> Finding:
     factor = change.factor
     text = _text(choices.change_alone, factor, _grows(found), change.shown)
     about: dict[str, Value] = {"value": percent(abs(1 - factor))}
-    if text in (Text.CELL_UNKNOWN, Text.CELL_NONE_LEFT):
+    if text in (Text.CELL_UNKNOWN, Text.CELL_NONE_LEFT, Text.CELL_SAME):
         about = {}
     elif text == Text.CELL_REDUCES_NEARLY_ALL:
         about = _nearly_all(change)

@@ -141,6 +141,7 @@ class Text(StrEnum):
     CELL_REDUCES = auto()
     CELL_REDUCES_NEARLY_ALL = auto()
     CELL_REDUCES_OPEN = auto()
+    CELL_SAME = auto()
     CELL_INCREASES = auto()
     CELL_BEARS_MORE = auto()
     CELL_BEARS_OPEN = auto()

@@ -176,8 +176,16 @@ def test_a_change_that_leaves_nothing_is_told_apart_from_one_that_changes_nothin
     assert [choices.reduces(1.0, grows) for grows in (False, True)] == [1, 2]
 
 
+@pytest.mark.parametrize("shown", [False, True])
+@pytest.mark.parametrize("grows", [False, True])
+def test_of_what_changes_nothing_no_number_is_said(grows, shown):
+    """A bracket said "0 % less risk; so few motions do not show it"."""
+    text = TEXTS[choices.change_alone][choices.change_alone(1.0, grows, shown)]
+    assert text == "cell_same"
+
+
 def test_of_what_takes_off_nearly_all_one_bound_is_said_and_never_all():
-    """It "takes off more than 99 % of the risk (100 to 100 %)"."""
+    """It was said of "more than 99 % less risk (100 to 100 %)"."""
     nearly = TEXTS[choices.reduces][choices.reduces(0.004, grows=False)]
     assert nearly == "reduces_nearly_all"
     assert TEXTS[choices.reduces][choices.reduces(0.006, grows=False)] == "reduces"

@@ -41,8 +41,7 @@ const findings = (data, core, judge) => {
     });
     return {
       value: percent(value),
-      lower: whole(100 * least),
-      upper: whole(100 * most),
+      ...limits({ lower: least, upper: most }),
     };
   }
   // the least that a change takes off that takes off nearly all
@@ -260,8 +259,8 @@ const findings = (data, core, judge) => {
         .filter((each) => each.shown)
         .slice(0, MOST_CHANGES);
       // what may hold it is tried when it is chosen
-      const leftOut = finding("holders_not_tried");
-      if (!shown.length) return [finding("no_change_shown"), leftOut];
+      const leftOut = request.hold ? [] : [finding("holders_not_tried")];
+      if (!shown.length) return [finding("no_change_shown"), ...leftOut];
       const said = shown.map((each) => [chosen("reduces", each.factor, false), each]);
       return [
         ...said.map(([id, each]) =>
@@ -270,7 +269,7 @@ const findings = (data, core, judge) => {
             ...takenOff(id, each),
           }),
         ),
-        leftOut,
+        ...leftOut,
       ];
     }
     function howSure() {
@@ -366,6 +365,7 @@ const findings = (data, core, judge) => {
       {
         cell_unknown: () => ({}),
         cell_none_left: () => ({}),
+        cell_same: () => ({}),
         cell_reduces: () => reduction({ factor, lower, upper }),
         cell_reduces_nearly_all: () => nearlyAll({ upper }),
       }[id] ?? (() => ({ value: percent(Math.abs(1 - factor)) }));

@@ -178,6 +178,8 @@ def change_alone(factor: float, grows: bool, shown: bool) -> int:
     """
     if math.isnan(factor):
         return 0
+    if factor == 1.0:
+        return 9
     if grows and factor < 1.0:
         return 1
     if not grows and factor > 1.0:

@@ -49,7 +49,7 @@ from rockfrag.system.support import (
     Support,
 )
 from rockfrag.system.system import System, hold
-from rockfrag.words.findings import Finding, Value, finding, two
+from rockfrag.words.findings import Finding, Value, finding, three, two
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class Putty(Holder):
 
     def called(self) -> Finding:
         """Such as putty that holds 120 N."""
-        return finding(Text.HOLD_PUTTY, force=two(self.tension))
+        return finding(Text.HOLD_PUTTY, force=three(self.tension))
 
     @property
     def bears(self) -> float:
@@ -160,9 +160,9 @@ class Fastener(Holder):
         """What its text names: force, slack and height."""
         slack = finding(Text.NO_SLACK)
         if self.slack > 0:
-            slack = finding(Text.SLACK, size=two(1000 * self.slack))
+            slack = finding(Text.SLACK, size=three(1000 * self.slack))
         height = finding("whole_percent", value=two(100 * FASTENED_AT))
-        return {"force": two(self.strength), "slack": slack, "height": height}
+        return {"force": three(self.strength), "slack": slack, "height": height}
 
 
 @dataclass(frozen=True)
@@ -261,9 +261,9 @@ class Pendulum(Isolator):
         """Such as an isolator with 18 cm to both sides."""
         return finding(
             Text.HOLD_ISOLATOR,
-            stroke=two(100 * self.stroke),
-            radius=two(self.radius),
-            friction=two(self.friction),
+            stroke=three(100 * self.stroke),
+            radius=three(self.radius),
+            friction=three(self.friction),
         )
 
 
@@ -298,9 +298,12 @@ class Springs(Isolator):
 
     def called(self) -> Finding:
         """Such as an isolator with 18 cm to both sides."""
-        stroke = two(100 * self.stroke)
+        stroke = three(100 * self.stroke)
         if self.stiffness is not None and self.strength is not None:
-            springs = {"stiffness": two(self.stiffness), "strength": two(self.strength)}
+            springs = {
+                "stiffness": three(self.stiffness),
+                "strength": three(self.strength),
+            }
             return finding(Text.HOLD_SPRINGS_STATED, stroke=stroke, **springs)
         part = finding("whole_percent", value=two(100 * SLIDES_AT))
         period = two(2 * math.pi * math.sqrt(RADIUS / GRAVITY))
@@ -325,7 +328,7 @@ class Beside(Holder):
     def short(self) -> Finding:
         """A wall, with its height if that was given."""
         if self.height < math.inf:
-            return finding(Text.HELD_BY_LOW_WALL, height=two(100 * self.height))
+            return finding(Text.HELD_BY_LOW_WALL, height=three(100 * self.height))
         return finding(Text.HELD_BY_WALL)
 
     def key_in_plane(self, solid: System) -> str:
@@ -347,9 +350,9 @@ class Beside(Holder):
 
     def called(self) -> Finding:
         """Such as a wall 5 cm behind it."""
-        distance = two(100 * self.distance)
+        distance = three(100 * self.distance)
         if self.height < math.inf:
-            high = two(100 * self.height)
+            high = three(100 * self.height)
             return finding(Text.HOLD_LOW_WALL, distance=distance, height=high)
         return finding(Text.HOLD_WALL, distance=distance)
 
