@@ -215,9 +215,10 @@ def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
     assert 0.001 < found.lower < found.value < found.upper < 0.75
 
 
-def test_pedestals_on_each_other_are_given_from_above(own_records, tmp_path, capsys):
+def test_pedestals_on_each_other_are_given_from_above(tmp_path, capsys):
+    records = write_records(tmp_path, motions_of_noise(4))
     options = "--width 42cm --height 165cm --pedestal 60cm 90cm --pedestal 80cm 30cm --pga 0.4g --json"
-    places = ["--record", str(own_records / "catalogue.csv"), "--output", str(tmp_path)]
+    places = ["--record", str(records), "--output", str(tmp_path)]
     assert main(["assess", *options.split(), *places]) == 0
     answer = json.loads(capsys.readouterr().out)
     ways = ["on_its_pedestals", "fixed_to_its_pedestals", "on_the_floor"]

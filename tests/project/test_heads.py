@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from ..sources import tree_of
+
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / "rockfrag"
 ROOMS = (
@@ -29,11 +31,10 @@ PAGE = re.compile(r'``docs/(?P<page>[\w/-]+\.md)``(?:, "(?P<section>[^"]+)")?')
 
 def head(path: Path) -> str:
     """Docstring of a module as it stands in its first lines, on one line."""
-    text = path.read_text(encoding="utf-8")
-    body = ast.parse(text).body
-    if not body or not ast.get_docstring(ast.parse(text)):
+    text, tree = path.read_text(encoding="utf-8"), tree_of(path)
+    if not ast.get_docstring(tree):
         return ""
-    end = min(body[0].end_lineno or 0, FIRST_LINES)
+    end = min(tree.body[0].end_lineno or 0, FIRST_LINES)
     return " ".join("\n".join(text.splitlines()[:end]).split())
 
 

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from ..sources import tree_of
+
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = (ROOT / "src", ROOT / "thesis" / "src")
 MOST_POSITIONAL = 5
@@ -23,7 +25,7 @@ def modules() -> dict[str, ast.Module]:
     for folder in SOURCES:
         for path in sorted(folder.rglob("*.py")):
             name = path.relative_to(folder).as_posix()
-            found[name] = ast.parse(path.read_text(encoding="utf-8"))
+            found[name] = tree_of(path)
     assert len(found) > 200
     return found
 

@@ -3,12 +3,12 @@
 import ast
 import re
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 
 import pytest
 
 from ..case_tables import case_tables
+from ..sources import nodes_of
 
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "rockfrag"
 THESIS = SOURCE.parents[1] / "thesis" / "src"
@@ -32,12 +32,6 @@ TEXTS = (".py", ".pyi", ".json", ".j2", ".css", ".js")
 STATEMENT = re.compile(r"C[1-9]\d?")
 
 
-@cache
-def nodes(path: Path) -> list[ast.AST]:
-    """Everything that stands in a file."""
-    return list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
-
-
 def sources(subpackage: str) -> list[Path]:
     return sorted((SOURCE / subpackage).rglob("*.py"))
 
@@ -45,7 +39,7 @@ def sources(subpackage: str) -> list[Path]:
 def imported(path: Path) -> set[str]:
     """Modules that a file imports, at its top or in a function; relative ones begin with dots."""
     names = set()
-    for node in nodes(path):
+    for node in nodes_of(path):
         if isinstance(node, ast.ImportFrom):
             names.add("." * node.level + (node.module or ""))
         elif isinstance(node, ast.Import):
@@ -87,7 +81,7 @@ def test_subpackage_of_the_library_names_no_specimen_floor_or_statement_of_a_stu
 ):
     looked_at = 0
     for path in sources(subpackage):
-        for node in nodes(path):
+        for node in nodes_of(path):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 words = {node.value, *re.findall(r"``([^`]+)``", node.value)}
                 known = words & (SPECIMENS | FLOORS)
@@ -150,7 +144,7 @@ def test_nothing_outside_of_systems_asks_whether_a_thing_is_a_block_or_a_stack()
 def test_no_field_or_column_is_named_after_the_role_of_a_body():
     looked_at = 0
     for path in [*SOURCE.rglob("*.py"), *THESIS.rglob("*.py")]:
-        for node in nodes(path):
+        for node in nodes_of(path):
             names = []
             if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
                 names = [node.target.id]
@@ -172,7 +166,7 @@ NO_NAMES = {"one", "item"}  # what no variable is called: it says nothing of wha
 
 def bound(path: Path) -> Iterator[tuple[int, str, bool]]:
     """Line and name of what a file binds, and whether it is a variable."""
-    for node in nodes(path):
+    for node in nodes_of(path):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
             yield node.lineno, node.id, True
         elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):

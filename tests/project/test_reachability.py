@@ -13,6 +13,8 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
+from ..sources import tree_of
+
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = (ROOT / "src", ROOT / "thesis" / "src")
 REGISTERING = (
@@ -44,7 +46,7 @@ def modules() -> dict[str, ast.Module]:
         for path in sorted(source.rglob("*.py")):
             parts = path.relative_to(source).with_suffix("").parts
             name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-            found[name] = ast.parse(path.read_text(encoding="utf-8"))
+            found[name] = tree_of(path)
     return found
 
 
@@ -213,11 +215,12 @@ class Graph:
             # the module or the class of a name that is reached by a longer one
             left |= {name.rpartition(".")[0]} - seen - {""}
             if not left:
+                made = seen & objects
                 left |= {
                     full
                     for item in used
                     for home, full in methods[item]
-                    if home in seen & objects
+                    if home in made
                 } - seen
         return seen
 
@@ -231,7 +234,7 @@ def exported(known: Iterable[str]) -> Iterator[str]:
     for source in SOURCES:
         for path in source.rglob("__init__.pyi"):
             package = ".".join(path.parent.relative_to(source).parts)
-            tree = ast.parse(path.read_text(encoding="utf-8"))
+            tree = tree_of(path)
             names = imported(tree, package)
             for node in tree.body:
                 if isinstance(node, ast.Assign) and isinstance(

@@ -5,6 +5,8 @@ from collections import defaultdict
 from functools import cache
 from pathlib import Path
 
+from ..sources import tree_of
+
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / "rockfrag"
 THESIS = ROOT / "thesis" / "src" / "rockfrag_thesis"
@@ -24,7 +26,7 @@ def trees() -> dict[str, ast.Module]:
     for package, folder in (("rockfrag", SOURCE), ("rockfrag_thesis", THESIS)):
         for path in sorted(folder.rglob("*.py")):
             name = ".".join((package, *path.relative_to(folder).with_suffix("").parts))
-            found[name] = ast.parse(path.read_text(encoding="utf-8"))
+            found[name] = tree_of(path)
     return found
 
 

@@ -14,6 +14,7 @@ from rockfrag.stages.fragility import best_of
 from rockfrag.words import sentences
 
 from ..case_tables import case_tables
+from ..sources import nodes_of
 
 CASES = case_tables(__file__)
 
@@ -55,7 +56,7 @@ def spoken() -> list[tuple[str, str]]:
     for folder in (*folders, ROOT / "thesis" / "src"):
         assert folder.is_dir()
         for path in sorted(folder.rglob("*.py")):
-            nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+            nodes = nodes_of(path)
             silent = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
             texts = [node for node in nodes if isinstance(node, ast.Constant)]
             found += [

@@ -257,9 +257,9 @@ def test_every_file_that_a_study_names_is_of_a_kind_that_is_tried(
     assert named <= set(FOLLOWS)
 
 
-@pytest.mark.parametrize("goes_on", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_a_table_in_the_place_of_another_is_read_and_one_from_the_future_too(
-    tmp_path: Path, goes_on: bool
+    tmp_path: Path,
 ):
     table = write_synthetic(tmp_path)
     study = write_example(tmp_path, table.name, replicates=20)
@@ -277,8 +277,6 @@ def test_a_table_in_the_place_of_another_is_read_and_one_from_the_future_too(
     finished(called(tmp_path, *run))
     second = curves.read_bytes()
     assert second != first
-    if not goes_on:
-        return
     # the clock is set back: what was written seems to be of tomorrow
     for path in (tmp_path / "results").rglob("*"):
         os.utime(path, (ahead, ahead))

@@ -196,11 +196,30 @@ def test_a_study_may_go_on_without_what_is_damaged_and_says_so(
     assert "under 3 records of 3 earthquakes" in report
 
 
-def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
-    write_synthetic(tmp_path)
-    write_example(tmp_path, "synthetic.csv", replicates=20)
-    finished(snakemake(tmp_path, "--cores", "1"))
-    results = tmp_path / "results" / "measured-example"
+PLAIN = {"LC_ALL": "C", "PYTHONUTF8": "0"}
+"""Environment of a machine that speaks no language."""
+
+
+def run_table(folder: Path, **more: str) -> str:
+    """Run the study of a table by the launcher in its folder, in a plain environment; what it said."""
+    run = (*LAUNCHER, "study.yaml", "--cores", "1", "--logger", "rockfrag")
+    return finished(called(folder, *run, env=os.environ | PLAIN | more)).stderr
+
+
+@pytest.fixture(scope="module")
+def table_study(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a study of a table that has run, whose name is not of plain letters."""
+    folder = tmp_path_factory.mktemp("a table") / "Köln 像"
+    folder.mkdir()
+    write_synthetic(folder)
+    write_example(folder, "synthetic.csv", replicates=20)
+    said = run_table(folder)
+    assert "Traceback" not in said and "Error" not in said
+    return folder
+
+
+def test_a_synthetic_table_runs_from_csv_to_report(table_study: Path):
+    results = table_study / "results" / "measured-example"
     curves = pd.read_csv(results / "fragility.csv").set_index("im")
     assert curves.loc["PGV", "theta"] == pytest.approx(40, rel=0.1)
     assert pd.read_parquet(results / "recommendation.parquet")["im"].iloc[0] == "PGV"
@@ -213,35 +232,42 @@ def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
     ).stat().st_size > 1000
 
 
+def test_names_are_read_in_whatever_language_the_machine_speaks(table_study: Path):
+    command = (sys.executable, "-m", "rockfrag.cli.main", "check-config")
+    checked = called(table_study, *command, "study.yaml", env=os.environ | PLAIN)
+    assert checked.returncode == 0
+
+
+def test_an_older_table_in_the_place_of_another_is_read(table_study: Path):
+    table = table_study / "synthetic.csv"
+    curves = table_study / "results" / "measured-example" / "fragility.csv"
+    kept, first = table.read_bytes(), curves.read_bytes()
+    try:
+        table.write_bytes(b"".join(kept.splitlines(keepends=True)[:120]))
+        os.utime(table, (0, 0))
+        finished(
+            called(
+                table_study,
+                *LAUNCHER,
+                "study.yaml",
+                "--cores",
+                "1",
+                str(curves.relative_to(table_study)),
+            )
+        )
+        assert curves.read_bytes() != first
+    finally:
+        table.write_bytes(kept)
+
+
 @pytest.mark.slow
 def test_a_home_that_may_not_be_written_is_none_of_a_study_s_concern(tmp_path: Path):
     write_synthetic(tmp_path)
     write_example(tmp_path, "synthetic.csv", replicates=20)
-    run = (*LAUNCHER, "study.yaml", "--cores", "1", "--logger", "rockfrag")
     # nobody makes folders there, whatever the permissions
     nowhere = {"HOME": "/proc/nothing", "XDG_CACHE_HOME": "/proc/nothing/cache"}
-    done = finished(called(tmp_path, *run, env=os.environ | nowhere))
-    assert "Traceback" not in done.stderr
+    assert "Traceback" not in run_table(tmp_path, **nowhere)
     assert (tmp_path / "results" / "measured-example" / "report.html").is_file()
-
-
-def test_names_are_read_in_whatever_language_the_machine_speaks(tmp_path: Path):
-    folder = tmp_path / "Köln 像"
-    folder.mkdir()
-    write_synthetic(folder)
-    write_example(folder, "synthetic.csv", replicates=20)
-    plain = {"LC_ALL": "C", "PYTHONUTF8": "0"}
-    said = called(
-        tmp_path,
-        *(*LAUNCHER, f"{folder.name}/study.yaml", "--cores", "1"),
-        *("--logger", "rockfrag"),
-        env=os.environ | plain,
-    )
-    finished(said)
-    assert "Traceback" not in said.stderr and "Error" not in said.stderr
-    command = (sys.executable, "-m", "rockfrag.cli.main", "check-config")
-    checked = called(folder, *command, "study.yaml", env=os.environ | plain)
-    assert checked.returncode == 0
 
 
 def test_a_run_that_is_interrupted_says_that_it_can_be_taken_up_again(

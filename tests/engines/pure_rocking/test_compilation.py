@@ -24,6 +24,7 @@ from rockfrag.stages import job
 from rockfrag.system.blocks import Block, Stack
 
 from ...conftest import printed_alone
+from ...sources import nodes_of
 
 BLOCK = Block(0.3, 1.2, 200.0)
 STACK = Stack(Block(0.4, 0.3, 100.0), BLOCK)
@@ -105,7 +106,7 @@ def test_what_a_law_computes_with_is_the_same_in_every_process():
 
 def test_no_kernel_has_more_than_eight_parameters():
     for path in KERNELS.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes_of(path):
             if isinstance(node, ast.FunctionDef):
                 count = len(
                     [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
