@@ -86,7 +86,7 @@ def quantity(name: str, model: Model, at: tuple[float, float], state: Array) -> 
     return np.array([vectors[name].real, vectors[name].imag])
 
 
-def random_systems(n: int = 60, seed: int = 2) -> System:
+def random_systems(n: int = 15, seed: int = 2) -> System:
     """Draw systems of any inertia, the statue narrower than the pedestal, in any state."""
     rng = np.random.default_rng(seed)
     b1, b2 = rng.uniform(0.2, 1.0, n), rng.uniform(0.3, 0.95, n)
@@ -129,7 +129,7 @@ def impact_map(s: System, old: tuple[int, int], new: tuple[int, int]) -> Array:
 # --------------------------------------------------------------------------- the thesis
 
 
-ALONE, UNIFORM = S.standing(), random_systems(200, 3)
+ALONE, UNIFORM = S.standing(), random_systems(50, 3)
 UNIFORM = UNIFORM.with_(
     ic1=UNIFORM.m1 * (UNIFORM.b1**2 + UNIFORM.h1**2) / 3,
     ic2=UNIFORM.m2 * (UNIFORM.b2**2 + UNIFORM.h2**2) / 3,
