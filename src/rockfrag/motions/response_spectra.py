@@ -259,6 +259,42 @@ def peak_within(
 
 
 @cached_njit()
+def _end_of_step(
+    matrix: Floats, start: tuple[float, float, float, float]
+) -> tuple[float, float]:
+    """Move u [m] and u' [m/s] on by a step; ``start``: both before, and the ground's acceleration and slope."""
+    u, v, a, s = start
+    return (
+        matrix[0, 0] * u + matrix[0, 1] * v + matrix[0, 2] * a + matrix[0, 3] * s,
+        matrix[1, 0] * u + matrix[1, 1] * v + matrix[1, 2] * a + matrix[1, 3] * s,
+    )
+
+
+@cached_njit()
+def _accelerations(
+    u: float, v: float, ground: float, c: float, k: float
+) -> tuple[float, float, float]:
+    """Total and relative acceleration [m/s²], and slope of the total one [m/s³]; ``ground``: its own [m/s²]."""
+    total = -(c * v + k * u)
+    relative = total - ground
+    return total, relative, -(c * relative + k * v)
+
+
+@cached_njit()
+def _responses(
+    u: float, v: float, known: tuple[float, float, float], s: float, c: float, k: float
+) -> tuple[tuple[float, float, float], ...]:
+    """Value, slope and curvature of u, of u' and of the total acceleration, at one end of a step.
+
+    ``known``: :func:`_accelerations` there; ``s``: slope of the ground's acceleration in that step [m/s³].
+    """
+    total, relative, jerk = known
+    third = jerk - s
+    fourth = -c * third - k * relative
+    return (u, v, relative), (v, relative, third), (total, jerk, fourth)
+
+
+@cached_njit()
 def _peaks(
     acceleration: Floats,
     step: float,
@@ -266,8 +302,8 @@ def _peaks(
     matrix: Floats,
     omega: float,
     damping: float,
-) -> tuple[float, float, float]:
-    """Peaks of relative displacement [m] and velocity [m/s] and total acceleration [m/s²], between steps too.
+) -> Floats:
+    """Integrate an oscillator step by step, and keep its peaks: at the steps, and where it turns between them.
 
     Parameters
     ----------
@@ -275,49 +311,32 @@ def _peaks(
     step, parts : length of a step [s], and steps a sample
     matrix : :func:`oscillator_matrix` of a step
     omega, damping : of the oscillator [rad/s], [-]
+
+    Returns
+    -------
+    Peaks of relative displacement [m] and velocity [m/s] and of the total acceleration [m/s²], shape (3,).
     """
     c, k = 2 * damping * omega, omega * omega
     u = v = 0.0
-    total, relative = 0.0, -acceleration[0]
-    jerk = -c * relative
-    sd = sv = sa = 0.0
+    known = _accelerations(u, v, acceleration[0], c, k)
+    peaks = np.zeros(3)
     for i in range(acceleration.size - 1):
-        start = acceleration[i]
-        s = (acceleration[i + 1] - start) / (parts * step)
+        begin = acceleration[i]
+        s = (acceleration[i + 1] - begin) / (parts * step)
         for j in range(parts):
-            a = start + j * step * s
-            u1 = (
-                matrix[0, 0] * u
-                + matrix[0, 1] * v
-                + matrix[0, 2] * a
-                + matrix[0, 3] * s
-            )
-            v1 = (
-                matrix[1, 0] * u
-                + matrix[1, 1] * v
-                + matrix[1, 2] * a
-                + matrix[1, 3] * s
-            )
-            # at the end of the step: total and relative acceleration, and the slope of the total one
-            total1 = -(c * v1 + k * u1)
-            relative1 = total1 - (a + step * s)
-            jerk1 = -(c * relative1 + k * v1)
-            sd, sv, sa = max(sd, abs(u1)), max(sv, abs(v1)), max(sa, abs(total1))
-            # third derivative of u at both ends, and second one of the total acceleration
-            at, third, third1 = (u, v, a, s), jerk - s, jerk1 - s
-            fourth, fourth1 = -c * third - k * relative, -c * third1 - k * relative1
-            # most steps hold no turn, and are not looked into
-            if v * v1 < 0 or relative * relative1 < 0:
-                ends = (u, v, relative), (u1, v1, relative1)
-                sd = max(sd, peak_within(0, ends[0], ends[1], at, c, k, step))
-            if relative * relative1 < 0 or third * third1 < 0:
-                ends = (v, relative, third), (v1, relative1, third1)
-                sv = max(sv, peak_within(1, ends[0], ends[1], at, c, k, step))
-            if jerk * jerk1 < 0 or fourth * fourth1 < 0:
-                ends = (total, jerk, fourth), (total1, jerk1, fourth1)
-                sa = max(sa, peak_within(2, ends[0], ends[1], at, c, k, step))
-            u, v, total, relative, jerk = u1, v1, total1, relative1, jerk1
-    return sd, sv, sa
+            a = begin + j * step * s
+            start = (u, v, a, s)
+            u1, v1 = _end_of_step(matrix, start)
+            known1 = _accelerations(u1, v1, a + step * s, c, k)
+            first = _responses(u, v, known, s, c, k)
+            last = _responses(u1, v1, known1, s, c, k)
+            for order in range(3):
+                between = peak_within(
+                    order, first[order], last[order], start, c, k, step
+                )
+                peaks[order] = max(peaks[order], abs(last[order][0]), between)
+            u, v, known = u1, v1, known1
+    return peaks
 
 
 def oscillator_response(
