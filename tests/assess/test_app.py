@@ -232,8 +232,8 @@ SLENDER = {"width": "20 cm", "height": "80 cm", "measure": "PGA", "level": "0.3 
 @pytest.mark.parametrize(
     ("floor", "building", "typed"),
     [
-        ("gallery", BUILDING, {}),
-        ("2/3", BUILDING, {}),
+        pytest.param("gallery", BUILDING, {}, marks=pytest.mark.slow),
+        pytest.param("2/3", BUILDING, {}, marks=pytest.mark.slow),
         ("2/4", KNOWN, {"floor": "3/4"}),
     ],
 )
@@ -253,7 +253,9 @@ def test_a_building_that_is_given_has_the_bits_of_the_package(
 
 
 @needs_node
-@pytest.mark.parametrize("measure", ["PGA", "SA(0.3)"])
+@pytest.mark.parametrize(
+    "measure", [pytest.param("PGA", marks=pytest.mark.slow), "SA(0.3)"]
+)
 def test_a_hazard_that_is_given_or_pasted_counts_with_its_quantiles(
     tmp_path, motions, measure
 ):

@@ -75,16 +75,19 @@ def judge(p, w, closing):
     return breaks_a_law(p, w, closing, True)
 
 
-def test_the_witness_of_every_history_sees_what_the_independent_one_sees() -> None:
+@pytest.mark.parametrize("impacts", [120, pytest.param(1000, marks=pytest.mark.slow)])
+def test_the_witness_of_every_history_sees_what_the_independent_one_sees(
+    impacts: int,
+) -> None:
     """Impacts as they were, and with what no contact could have done: a stop, a pull, a push from nowhere."""
     rng, seen, broken = np.random.default_rng(5), 0, 0
-    while seen < 300:
+    while seen < impacts:
         system, motion, up = shaken(rng)
         column = witness.Column.of(system, G)
         p, w = records.system_record(system, G), records.working_memory()
         for impact in impacts_of(
             system, history_of(system, motion, up, 1e-6).contact_events
-        )[:60]:
+        )[:30]:
             spoilt = impact.after.copy()
             kind = int(rng.integers(4))
             if kind:
@@ -100,7 +103,7 @@ def test_the_witness_of_every_history_sees_what_the_independent_one_sees() -> No
             seen += 1
             broken += worst > 1
             assert judge(p, w, 1e-6) == (worst > 1), laws
-    assert 100 < broken < 290
+    assert 0.3 * impacts < broken < 0.97 * impacts
 
 
 def test_a_state_that_is_no_number_counts_as_a_fall_and_as_a_paradox() -> None:
