@@ -56,6 +56,23 @@ def test_twins_on_one_floor_topple_together_and_others_less(gallery):
     assert (table.to_numpy() <= 1 + 1e-12).all()
 
 
+def test_what_topples_many_times_a_year_has_rates_and_no_probability_of_one(
+    own_records, tmp_path
+):
+    """Their probabilities are 1, and a rate that was made of one was 0.7 a year, or infinite."""
+    path = tmp_path / "needles.csv"
+    path.write_text("name,width,height\nneedle,2 cm,2 m\nplate,4 cm,2 m\n")
+    own = {"paths": [str(own_records / "catalogue.csv")]}
+    shared = {"pga": "0.6 g", "return_period": "10 years", "records": own}
+    joint = assess_inventory(path, shared).joint
+    rates = joint.objects.set_index("name")["annual_rate"]
+    assert rates["needle"] > 2 * rates["plate"] > 2
+    assert (joint.numbers["probability"] == 1).all()
+    total = joint.numbers["annual_rate"].iloc[0]
+    assert 2 < total <= rates.sum()
+    assert joint.losses["annual_rate"].iloc[0] == pytest.approx(total, rel=1e-9)
+
+
 def test_numbers_and_losses_follow_from_the_objects_and_what_adds_most_comes_first(
     gallery,
 ):

@@ -19,7 +19,7 @@ from rockfrag.study.loading import load_any
 from rockfrag.system.blocks import Block, Column
 
 from ..case_tables import case_tables
-from ..stages_in_process import run_stages
+from ..stages_in_process import files_read, run_stages, stages_of
 from .conftest import BLOCK, DT, PEDESTAL, configured, granite
 
 NOTED = {name: name for name in ("test", "motion", "overturned", "rocked")} | {
@@ -159,6 +159,31 @@ def test_a_bad_campaign_ends_in_one_sentence_before_anything_runs(
 ):
     with pytest.raises(InputError, match=re.escape(sentence)):
         load_any(configured(tmp_path, laboratory, **changes))
+
+
+def test_all_files_that_a_campaign_reads_make_it_run_again(tmp_path, laboratory):
+    """Those of motions in folders of their own too, and no others of the same pattern."""
+    table = laboratory.table.iloc[::16]
+    table = table.assign(motion=[f"day {k % 2}/run{k}" for k in range(len(table))])
+    for each, name in zip(table["motion"], table.index, strict=True):
+        file = tmp_path / f"{each}.txt"
+        file.parent.mkdir(exist_ok=True)
+        np.savetxt(file, laboratory.motions[f"run{name}"])
+    (tmp_path / "day 0" / "unused.txt").write_text("0\n")
+    table[["test", "overturned"]].to_csv(tmp_path / "codes.csv", index=False)
+    path = with_table(
+        tmp_path,
+        laboratory,
+        table,
+        campaign__motions="{motion}.txt",
+        campaign__other_codes="codes.csv",
+        trials=16,
+    )
+    study = load_any(path)
+    assert isinstance(study, CampaignStudy)
+    read = files_read(path, stages_of(study)[:1])
+    assert {*map(str, read)} == {*study.files, str(path)}
+    assert len(read) == len(table) + 3
 
 
 IN_SPACE = {

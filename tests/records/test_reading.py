@@ -1,5 +1,6 @@
 """Units, channels, times and zero levels are known, asked for or refused, never guessed."""
 
+import gzip
 import json
 
 import numpy as np
@@ -11,6 +12,7 @@ from obspy.core.inventory.response import PolesZerosResponseStage
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
 from rockfrag.cli.main import main
+from rockfrag.records.files_beside import with_files_beside
 from rockfrag.records.motion import Motion, write_motion_set
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.quality_flags import quality_flags
@@ -203,6 +205,29 @@ def test_miniseed_with_stationxml_is_acceleration(tmp_path):
     )
     assert motion.metadata["unit"] == "m/s2"
     assert motion.provenance[1]["step"] == "remove response"
+
+
+def test_what_a_record_is_read_with_is_known_beforehand(tmp_path):
+    """So that a study is computed again where it changes."""
+    counts = np.arange(100, dtype=np.int32) % 7
+    header = {**CMB, "channel": "HNE"}
+    Stream([Trace(counts, header)]).write(str(tmp_path / "a.mseed"), "MSEED")
+    stations = tmp_path / "CMB.xml"
+    inventory_of_cmb(100.0).write(str(stations), format="STATIONXML")
+    packed = tmp_path / "b.mseed.gz"
+    packed.write_bytes(gzip.compress((tmp_path / "a.mseed").read_bytes()))
+    script, values = tmp_path / "old.tcl", tmp_path / "its values.txt"
+    values.write_text("0.1 -0.2\n0.3\n")
+    script.write_text('set a "Series -dt 0.02 -filePath {its values.txt} -factor 2"\n')
+    counted = [tmp_path / "a.mseed", packed]
+    assert {read_motion(path).metadata["unit"] for path in counted} == {"m/s2"}
+    assert read_motion(script, unit="g").acceleration.size == 3
+    assert set(with_files_beside(counted)) == {*counted, stations}
+    assert with_files_beside([script]) == [script, values]
+    # text takes no StationXML, and what is not there has nothing beside it
+    text = two_columns(tmp_path / "text.txt", [0, 0.01, 0.02], [0.0, 1.0, 0.0])
+    absent = tmp_path / "absent.mseed"
+    assert with_files_beside([text, absent, text]) == [text, absent]
 
 
 def test_a_file_name_with_wildcards_is_a_name(tmp_path):

@@ -12,11 +12,12 @@ from rockfrag.base.errors import InputError
 from rockfrag.report.space_page import _live
 from rockfrag.stages import space_study as stage
 from rockfrag.stages.space_study import PLANAR, median
-from rockfrag.study.loading import any_study
+from rockfrag.study.loading import any_study, load_any
 from rockfrag.study.space import SpaceStudy
 
 from ..case_tables import case_tables
-from ..stages_in_process import run_stages
+from ..stages_in_process import files_read, run_stages
+from ..workflow.conftest import CATALOGUE, write_record, write_study
 
 SMALL = case_tables(__file__)
 
@@ -68,6 +69,29 @@ def test_a_study_of_bodies_in_space_gives_medians_and_a_report(
     for text, component in zip(live["motions"][0]["samples"], pairs[0], strict=True):
         samples = np.frombuffer(base64.b64decode(text))
         np.testing.assert_array_equal(samples, component.acceleration)
+
+
+def test_all_files_that_a_study_in_space_reads_make_it_run_again(tmp_path):
+    rows = [CATALOGUE.replace(",file,", ",file,second,")]
+    for number in range(3):
+        names = f"x{number}.txt", f"y{number}.txt"
+        for seed, name in enumerate(names):
+            write_record(tmp_path / name, 10 * number + seed, samples=250, dt=0.02)
+        files = ",".join(names)
+        rows.append(f"m{number},E{number},,,,,,folder,{files},,g,made up\n")
+    (tmp_path / "motions.csv").write_text("".join(rows))
+    space = {key: value for key, value in SMALL["space"].items() if key != "every"}
+    content = SMALL | {"space": space | {"catalogue": "motions.csv"}}
+    path = write_study(tmp_path, content)
+    study = load_any(path)
+    assert isinstance(study, SpaceStudy)
+
+    def reads(job):
+        stage.own_pairs(job.study)
+        return iter(())
+
+    read = files_read(path, [reads])
+    assert {*map(str, read)} == {*study.files, str(path)}
 
 
 def test_bodies_whose_base_differs_from_record_to_record_are_not_shown_live(

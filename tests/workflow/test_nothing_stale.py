@@ -11,14 +11,20 @@ import time
 import zipfile
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout, suppress
+from functools import reduce
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
 
+from rockfrag.config.schema import read_schema
 from rockfrag.runtime.processes import in_processes
 from rockfrag.stages.running import bring_to_now
+from rockfrag.study.loading import load_any
+from rockfrag.study.study import Study
 
+from ..stages_in_process import files_read
 from .conftest import (
     CATALOGUE,
     STUDY,
@@ -43,6 +49,7 @@ FOLLOWS: dict[str, set[str]] = {
     "house.yaml": EVERYTHING,
     "specimens.csv": BODIES,
     "configurations.csv": BODIES,
+    "isolators.csv": BODIES,
     "shaker.yaml": {"tests", "pedestal", "measured_tests", "report"},
     "tests.csv": {"measured_tests", "report"},
 }
@@ -68,14 +75,18 @@ def write_study_of_all_kinds(folder: Path) -> None:
     """Write a study with a file of each kind."""
     shutil.copytree(STUDY, folder)
     (folder / "configurations.csv").write_text(
-        "name,object,pedestal\nT1,T1,\nP&T1,T1,P\n"
+        "name,object,pedestal\nT1,T1,\nP&T1,T1,P\nT1 on dish,T1|dish,\n"
+    )
+    (folder / "isolators.csv").write_text(
+        "name,mass_kg,radius_m,friction,stroke_cm\ndish,5,1.5,0.06,9\n"
     )
     rows = [CATALOGUE.replace(",file,", ",file,second,vertical,direction,")]
     for number, earthquake in enumerate(("First", "Second")):
         names = (f"record {{{number}}}.txt", f"second{number}.txt", f"up{number}.txt")
         for seed, name in enumerate(names):
             write_record(folder / name, 10 * number + seed, samples=300)
-        files = ",".join((*names, "stronger"))
+        # what no direction turns towards is measured
+        files = ",".join((*names, ("", "stronger")[number]))
         rows.append(f"m{number},{earthquake},,,,,,folder,{files},,g,made up\n")
     (folder / "motions.csv").write_text("".join(rows))
     (folder / "house.yaml").write_text(
@@ -89,6 +100,7 @@ def write_study_of_all_kinds(folder: Path) -> None:
     (folder / "tests.csv").write_text(MEASURED)
     content = study_content() | {
         "vertical": True,
+        "bodies": study_content()["bodies"] | {"isolators": "isolators.csv"},
         "building": "house.yaml",
         "shaker": "shaker.yaml",
         "measured_tests": "tests.csv",
@@ -246,15 +258,43 @@ def test_forty_files_in_the_places_of_others(ran: Path, tmp_path: Path):
     assert reruns(ran) == set()
 
 
-def test_every_file_that_a_study_names_is_of_a_kind_that_is_tried(
-    tmp_path: Path,
+@pytest.fixture
+def whole_study(tmp_path: Path) -> Path:
+    """The folder of a study with a file of each kind, which has not run."""
+    write_study_of_all_kinds(tmp_path / "a study")
+    return tmp_path / "a study"
+
+
+def test_every_file_that_a_study_may_name_is_named_and_of_a_kind_that_is_tried(
+    whole_study: Path,
 ):
-    folder = tmp_path / "a study"
-    write_study_of_all_kinds(folder)
-    content = yaml.safe_load((folder / "study.yaml").read_text())
-    named = {content[key] for key in ("building", "shaker", "measured_tests")}
-    named |= {content["motions"]["catalogue"], *content["bodies"].values()}
-    assert named <= set(FOLLOWS)
+    content = yaml.safe_load((whole_study / "study.yaml").read_text())
+    named = {key: _at(content, key) for key in _keys_of_files(read_schema("study"))}
+    assert set(named.values()) <= set(FOLLOWS), named
+
+
+def _keys_of_files(schema: dict[str, Any], above: tuple[str, ...] = ()) -> list[tuple]:
+    """Keys of a schema that take the path of a file."""
+    if str(schema.get("description")).startswith("the path of "):
+        return [above]
+    below = schema.get("properties", {}).items()
+    return [key for name, part in below for key in _keys_of_files(part, (*above, name))]
+
+
+def _at(content: Any, key: tuple[str, ...]) -> Any:
+    return reduce(lambda part, name: part.get(name), key, content)
+
+
+@pytest.mark.slow
+def test_every_file_that_a_study_reads_makes_something_run_again(whole_study: Path):
+    """Those that it names nowhere too, as what lies beside a record."""
+    path = whole_study / "study.yaml"
+    study = load_any(path)
+    assert isinstance(study, Study)
+    named = {*study.motion_files, *study.body_files}
+    named |= {str(study.shaker_file), str(study.measured_tests), str(path)}
+    read = files_read(path)
+    assert {*map(str, read)} == named
 
 
 @pytest.mark.slow

@@ -112,7 +112,7 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
     per_level = np.array(
         [toppling_rate(levels, unit, hazard) for unit in np.eye(levels.size)]
     )
-    rates = np.array([_annual_rate(assessment) for assessment in found])
+    rates = np.array([_annual_rate(each.evidence, hazard) for each in found])
     names = [assessment.request.name for assessment in found]
     correlation = _correlation(fell, allowed, per_level)
     return JointRisk(
@@ -143,15 +143,14 @@ def _losses(
             rocked=np.ones_like(together.rocked),
             lifting=None,
         )
-        chance = _common(reached).mean(risk_target(hazard, 1.0), reached)
-        exceeded.append(-math.log1p(-chance))
+        exceeded.append(_annual_rate(_common(reached), hazard))
     return pd.DataFrame({"loss": steps, "annual_rate": exceeded})
 
 
-def _annual_rate(found: Assessment) -> float:
+def _annual_rate(evidence: Evidence, hazard: HazardCurve) -> float:
     """Rate of toppling, the mean over what is not known [1/year]."""
-    assert found.probability is not None
-    return -math.log1p(-min(found.probability.value, 1 - 1e-15)) / found.request.years
+    # not of the probability, which is 1 for all rates far above one in its years
+    return evidence.drawn(risk_target(hazard, 1.0)).middle
 
 
 def _common(outcomes: ObjectOutcomes) -> Evidence:
@@ -178,8 +177,7 @@ def _numbers(
 ) -> pd.DataFrame:
     """How often at least so many topple, with what earthquakes and the model leave open."""
     assert first.hazard is not None and first.level is not None
-    years = first.request.years
-    target = risk_target(first.hazard, years)
+    target = risk_target(first.hazard, first.request.years)
     at = together.intensity_levels.place_of(first.level.value)
     rows = []
     for least in [n for n in NUMBERS if n <= count.max()] or [1]:
@@ -189,8 +187,8 @@ def _numbers(
             rocked=np.ones_like(together.rocked),
             lifting=None,
         )
-        found = _common(many).estimate(target)
-        rate = -math.log1p(-min(found.value, 1 - 1e-15)) / years
+        evidence = _common(many)
+        found, rate = evidence.estimate(target), _annual_rate(evidence, first.hazard)
         limits = found.value, found.lower, found.upper
         rows.append((least, rate, *limits, many.fractions()[at]))
     chances = ("probability", "probability_lower", "probability_upper")

@@ -14,6 +14,7 @@ from typing import Any
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import is_file
 from rockfrag.base.tabular import read_table
+from rockfrag.records.files_beside import with_files_beside
 from rockfrag.study.heading import Heading, Steps, beside, checked_steps, heading_of
 
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
@@ -79,13 +80,22 @@ class CampaignStudy(Heading):
         return [str(path) for path in named if path not in fetched]
 
     def _motion_files(self) -> list[Path]:
-        """The archive of the table's motions, or all files whose names are of their pattern."""
-        from rockfrag.campaign.laboratory import KEY
+        """The archive of the table's motions, or the files of those that the table of tests names.
+
+        Of a table that is still to be fetched these are all files whose names are of the pattern.
+        """
+        from rockfrag.campaign.laboratory import KEY, read_campaign
 
         if not self.motions or self.motions.endswith(".npz"):
             return [Path(self.motions)] if self.motions else []
-        pattern = "*".join(map(escape, self.motions.split(KEY)))
-        return [Path(name) for name in sorted(glob(pattern))]
+        if self.tests in {path for _, _, path in self.fetch}:
+            pattern = "*".join(map(escape, self.motions.split(KEY)))
+            return with_files_beside(map(Path, sorted(glob(pattern))))
+        tests = read_campaign(self.tests, self.columns, self.measures).tests
+        names = dict.fromkeys(tests["motion"])
+        return with_files_beside(
+            Path(self.motions.replace(KEY, name)) for name in names
+        )
 
 
 def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:

@@ -21,6 +21,7 @@ from rockfrag.config.plugins import plugins_asked
 from rockfrag.config.schema import checked
 from rockfrag.motions.processing import process
 from rockfrag.records.catalogue import own_records, read_catalogue, repeated_motions
+from rockfrag.records.files_beside import with_files_beside
 from rockfrag.records.motion import Motion
 from rockfrag.records.quality_flags import DRIFT, quality_flags
 from rockfrag.shaketable.shaker import read_shaker
@@ -144,15 +145,17 @@ def _bodies_of(content: Mapping[str, Any], source: Path) -> dict[str, Any]:
     bodies = content["bodies"]
     specimens_file = existing_file(source, "bodies.specimens", bodies["specimens"])
     specimens = arrangements.read_specimens(specimens_file)
-    configurations_file, known = None, arrangements.each_alone(specimens)
+    configurations_file, isolators_file = None, None
+    known = arrangements.each_alone(specimens)
     counterparts: dict[str, str] = {}
     if "configurations" in bodies:
         name = bodies["configurations"]
         configurations_file = existing_file(source, "bodies.configurations", name)
         isolators = {}
         if "isolators" in bodies:
-            table = existing_file(source, "bodies.isolators", bodies["isolators"])
-            isolators = read_isolators(table)
+            name = bodies["isolators"]
+            isolators_file = existing_file(source, "bodies.isolators", name)
+            isolators = read_isolators(isolators_file)
         known, counterparts = arrangements.read_configurations(
             configurations_file, specimens, isolators
         )
@@ -164,6 +167,7 @@ def _bodies_of(content: Mapping[str, Any], source: Path) -> dict[str, Any]:
         "specimens_file": specimens_file,
         "specimens": specimens,
         "configurations_file": configurations_file,
+        "isolators_file": isolators_file,
         "configurations": arrangements.with_contacts(
             chosen, specimens, content, str(source)
         ),
@@ -313,7 +317,7 @@ def check_records(study: Study) -> list[str]:
     """
     columns = ("file", "second", "vertical")
     files = own_records(study.catalogue, study.catalogue_file.parent, columns)
-    states = map(_state, [study.catalogue_file, *files])
+    states = map(_state, [study.catalogue_file, *with_files_beside(files)])
     asked = (tuple(study.catalogue["name"]), study.keep_going, study.vertical, *states)
     if asked not in _FOUND:
         _FOUND[asked] = _read_all(study)

@@ -14,6 +14,7 @@ import pandas as pd
 
 from rockfrag.base.errors import InputError
 from rockfrag.records.catalogue import own_records, read_catalogue
+from rockfrag.records.files_beside import with_files_beside
 from rockfrag.study.heading import Heading, existing_file, heading_of
 
 SPACE_KEY = "space"  # key that only a study of bodies in space has
@@ -51,7 +52,7 @@ class SpaceStudy(Heading):
         own = own_records(
             self.catalogue, self.catalogue_file.parent, ("file", "second")
         )
-        return [str(self.catalogue_file), *map(str, own)]
+        return [str(self.catalogue_file), *map(str, with_files_beside(own))]
 
 
 def space_study_from(content: Mapping[str, Any], source: Path) -> SpaceStudy:

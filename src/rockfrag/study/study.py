@@ -21,6 +21,7 @@ from rockfrag.base.plausible import size_warning
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.settings import read_building
 from rockfrag.records.catalogue import own_records
+from rockfrag.records.files_beside import with_files_beside
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.shaketable.shaker import Shaker
 from rockfrag.study.heading import Heading
@@ -89,9 +90,11 @@ class Study(Heading):
     building_file: Path | None
     # Level of each floor that is shaken, by its label; 0 is the ground
     floors: Mapping[str, int]
-    # Paths of the tables of bodies, the second None where each block stands alone, and the blocks by name
+    # Paths of the tables of bodies, the second None where each block stands alone, the third where nothing stands
+    # on an isolator, and the blocks by name
     specimens_file: Path
     configurations_file: Path | None
+    isolators_file: Path | None
     specimens: Mapping[str, Block]
     # What is tested, in order: systems whose bodies have the names of their blocks
     configurations: tuple[System, ...]
@@ -186,12 +189,9 @@ class Study(Heading):
 
     @property
     def body_files(self) -> list[str]:
-        """Paths of the tables of bodies."""
-        return [
-            str(path)
-            for path in (self.specimens_file, self.configurations_file)
-            if path
-        ]
+        """Paths of the tables of bodies, of configurations and of isolators."""
+        named = (self.specimens_file, self.configurations_file, self.isolators_file)
+        return [str(path) for path in named if path]
 
     @property
     def is_large(self) -> bool:
@@ -232,11 +232,11 @@ class Study(Heading):
 
     @property
     def motion_files(self) -> list[str]:
-        """Paths of the user's files that the motions depend on: catalogue, records of each component, building."""
-        folder, turned = self.catalogue_file.parent, self.catalogue["direction"] != ""
-        files = [self.catalogue_file, *self.own_records]
-        files += own_records(self.catalogue[turned], folder, ("second",))
-        files += own_records(self.catalogue, folder, ("vertical",) * self.vertical)
+        """Paths of files that motions depend on: catalogue, records with what they are read with, building."""
+        # second components are measured even where no direction turns towards them
+        columns = ("file", "second", *("vertical",) * self.vertical)
+        own = own_records(self.catalogue, self.catalogue_file.parent, columns)
+        files = [self.catalogue_file, *with_files_beside(own)]
         files += [self.building_file] if self.building_file else []
         return [str(path) for path in files]
 

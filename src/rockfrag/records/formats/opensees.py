@@ -72,6 +72,25 @@ def _series(
     )
 
 
+def files_named(script: Path) -> list[Path]:
+    """Return the files beside a script in which it says that values stand.
+
+    Parameters
+    ----------
+    script : path of what may be a script
+
+    Returns
+    -------
+    The paths, whether or not there are such files; none where nothing can be read.
+    """
+    try:
+        words = read_text(script).data.decode("latin-1")
+    except InputError:
+        return []
+    named = re.finditer(_OPTION.format(name="filePath"), words, re.I)
+    return [script.parent / _said(match) for match in named]
+
+
 def _command(text: TextFile, line: int, stop: int) -> str:
     """Return the whole command of a series: until braces close, with lines that a backslash joins."""
     ended = stop < len(text) or text.data.endswith(b"\n")
@@ -113,9 +132,12 @@ def _values(text: TextFile, line: int, script: str) -> NDArray[np.float64]:
 def _option(script: str, name: str) -> str | None:
     """What stands behind an option of a script, None if it is not there."""
     match = re.search(_OPTION.format(name=name), script, re.I)
-    return (
-        next(group for group in match.groups() if group is not None) if match else None
-    )
+    return _said(match) if match else None
+
+
+def _said(option: re.Match[str]) -> str:
+    """What stands behind an option that was found."""
+    return next(group for group in option.groups() if group is not None)
 
 
 def _number(text: TextFile, line: int, script: str, name: str) -> float | None:
