@@ -23,11 +23,13 @@ from .plain_rocking import (
 )
 
 with plain_library():
-    from rockfrag.engines.pure_rocking.kernels.lanes import case as cases
     from rockfrag.engines.pure_rocking.kernels.lanes import (
+        block,
         stack_constants,
         stack_one,
+        stack_two,
     )
+    from rockfrag.engines.pure_rocking.kernels.lanes import case as cases
 
 H = 0.004  # interval of the samples [s]
 
@@ -95,6 +97,23 @@ def test_extremes_of_a_lane_are_those_of_the_phase_plane():
     assert (ratio, fast, near) == pytest.approx((0.5, 0.2, 0.25 + 4.0 * 0.04))
     lane.was_ratio[2], lane.was_fast[2], lane.was_near[2] = 0.7, 0.3, 0.1
     assert stack_one.nearest(lane, 2, -0.15, 0.2) == pytest.approx((0.7, 0.3, 0.1))
+    # of two bodies it is the nearer one's distance
+    lane = plain(np.zeros(1, stack_two.LANE)[0])
+    lane.per_angle1[2], lane.per_speed1[2] = -1 / 0.3, 4.0
+    lane.per_angle2[2], lane.per_speed2[2] = 1 / 0.2, 9.0
+    lane.was_near[2] = 2.0
+    for angle, rate in ((0.02, 0.0), (0.19, 0.05)):
+        *ratios, fast, near = stack_two.nearest(lane, 2, (-0.15, 0.2, angle, rate))
+        assert (*ratios, fast) == pytest.approx((0.5, 5 * angle, rate))
+        nearer = min(0.25 + 4.0 * 0.04, (1 - 5 * angle) ** 2 + 9.0 * rate**2)
+        assert near == pytest.approx(nearer)
+    # a lone block's angle is counted from balance
+    lane = plain(np.zeros(1, block.LANE)[0])
+    lane.per_angle[2], lane.per_speed[2] = 1 / 0.3, 4.0
+    lane.low[2], lane.fast[2], lane.near[2] = 1.0, 0.05, 2.0
+    block._keep_extremes(lane, 2, 0.15, -0.2)
+    found = lane.low[2], lane.fast[2], lane.near[2]
+    assert found == pytest.approx((0.5, 0.2, 0.25 + 4.0 * 0.04))
 
 
 def hop_of(rng, c, contact, speed):
@@ -165,6 +184,9 @@ def test_hops_of_a_geometric_series_are_closed_if_it_ends_in_time(contact, upwar
             told.add("closes")
             assert closes(1.001 * lasts)
             assert not closes(0.999 * lasts)
+            # of what loses hardly anything in two impacts no end is foreseen
+            old_speed = 1e-5 * H * math.sqrt(parts[0] / parts[1] / 0.99)
+            assert not closes(1e9, hop=hop._replace(old=-old_speed))
             # the ground that pulls it open comes within the time, twice over
             samples[4:] = 1e4
             later = closes(1e9)

@@ -11,6 +11,7 @@ import pytest
 from rockfrag import Block, Stack, overturns, simulate
 
 from ...oracle.rocking_integrator import simulate_reference
+from ..planar.cases import G
 
 # bodies that the ground may lift off are held by pure rocking
 pytestmark = pytest.mark.filterwarnings(
@@ -65,6 +66,23 @@ def distance(block, theta):
     rate = np.gradient(theta, DT / TIMES)
     away = np.hypot(angle - np.abs(theta), rate / frequency) / angle
     return away[np.abs(theta) > 1e-9].min()
+
+
+def certain_by(block, known, push):
+    """Time by which energy carries a block over balance whatever the ground, over g, still does; inf if never.
+
+    Against the largest push ahead, A, which is known to 16 samples: ψ'²/2p² ≥ √(1 + A²) - cos ψ + A sin ψ.
+    """
+    theta = known.theta[:, 0]
+    rate = np.gradient(theta, DT / TIMES)
+    for n, (at, speed) in enumerate(zip(theta[::TIMES], rate[::TIMES], strict=True)):
+        side = 1 if at > 0 else -1
+        psi = block.critical_angle(side) - abs(at)
+        most = max(0.0, (side * push[max(0, n - 16) :]).max())
+        barrier = np.hypot(1.0, most) - np.cos(psi) + most * np.sin(psi)
+        if speed * side > 0 and (speed / block.frequency(side)) ** 2 / 2 >= barrier:
+            return n * DT
+    return np.inf
 
 
 def critical(body):
@@ -139,6 +157,9 @@ def test_an_ensemble_has_the_outcomes_and_peaks_of_the_plain_integrator(
             assert lasts - 1.5 < found.certain_time[at] <= lasts + DT
         if found.overturned[at]:
             told.add("falls")
+            if not (piles or upward):
+                by = certain_by(body, known, scale * level / G)
+                assert found.certain_time[at] <= by + DT
             continue
         if not piles:
             # it may come closer once the ground is still
