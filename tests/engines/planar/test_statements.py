@@ -18,8 +18,18 @@ from ...oracle.standing import StandingBody, standing, turn
 from .cases import G, random_column, with_contacts
 
 with plain_library():
-    from rockfrag.engines.planar import bonds, solve, step, support, ties, walls
+    from rockfrag.engines.planar import (
+        bonds,
+        integrate,
+        solve,
+        step,
+        support,
+        ties,
+        walls,
+        witness,
+    )
     from rockfrag.engines.planar import impact as impacts
+    from rockfrag.engines.planar.engine import VELOCITY_STEP
     from rockfrag.engines.planar.records import posed, system_record, working_memory
     from rockfrag.engines.planar.search import Trial, prepare, try_mode
     from rockfrag.system import (
@@ -27,6 +37,7 @@ with plain_library():
         Block,
         Bond,
         Column,
+        SlidingPendulum,
         Tie,
         Wall,
         as_system,
@@ -187,6 +198,9 @@ def test_ends_are_where_geometry_has_them():
                 assert (x, y) == pytest.approx((px, py), abs=1e-12)
                 assert (tx, ty, -ty, tx) == pytest.approx(axes, abs=1e-12)
                 assert gap == pytest.approx(across, abs=1e-12)
+                # the witness of impacts sees the same
+                seen = witness._place(p, w.q, k, end)
+                assert seen == pytest.approx((px, py, *axes[:2], across), abs=1e-12)
                 found = [
                     solve.rate(p, w.q, w.v, k, x, y, dx, dy)
                     for dx, dy in ((tx, ty), (-ty, tx))
@@ -893,6 +907,46 @@ def test_a_bilinear_spring_yields_at_its_strength_and_unloads_along_its_first_st
             p.spring_stiffness * at + force
         )
     assert w.yields == -1
+
+
+def test_a_plate_stays_in_its_dish_while_its_friction_bears_the_slope_and_the_ground():
+    """µ N ≥ |M a + N u/R|: at rest up to a slope of µ (Zayas, Low and Mahin, 1990)."""
+    dish = SlidingPendulum(mass=20.0, radius=1.0, friction=0.1)
+    block = as_system(Block(0.4, 0.5, 80.0))
+    p = plain(system_record(hold(block, support=dish), G))
+    p.static[1] = 0.9
+    told = set()
+    for u, ground in itertools.product((-0.15, -0.05, 0.05, 0.15), (-0.8, 0.0, 0.8)):
+        w = plain(working_memory())
+        w.q, w.drive[:], w.kind[:] = p.standing, -1, 1
+        w.q[[0, 3]] += u
+        w.whole[0], w.closed[:2], w.touching[:2] = support.GUIDED, 1, 1
+        w.along[:2] = w.against[:2] = p.static[:2]
+        trial = Trial(ground, 0.0, False, p.weight, G)
+        solve.look_at(p, w, w.q)
+        prepare(p, w, trial)
+        stays = try_mode(p, w, trial) >= 0
+        assert stays == (abs(ground / G + u) <= 0.1)
+        told.add((u < 0, ground < 0, stays))
+    assert len(told) >= 6
+
+
+def test_forces_that_no_motion_can_tell_apart_are_not_solved_for():
+    """A block shut at both ends at the ground and at a wall: six unknowns, three motions."""
+    block = as_system(Block(0.4, 1.0, 80.0))
+    wall = Wall(0.2, 0.0, friction=0.3)
+    p, w = plain(system_record(hold(block, wall), G)), plain(working_memory())
+    w.q, w.drive[:], w.kind[:], w.closed[0] = p.standing, -1, 1, 1
+    for ends, told in ((0, True), (1, False)):
+        w.closed[1] = ends
+        solve.look_at(p, w, w.q)
+        assert solve.solve_motion(p, w, w.q, w.v, RIGHT, UP) == told
+
+
+def test_kinds_of_contact_events_are_told_apart():
+    names = "CHANGE IMPACT PARADOX FALLEN PASSING AT_WALL TIED BROKEN"
+    kinds = [getattr(integrate, name) for name in names.split()] + [VELOCITY_STEP]
+    assert len(set(kinds)) == len(kinds)
 
 
 def test_kinetic_energy_is_that_of_all_bodies():
