@@ -43,7 +43,7 @@ def motions():
 
 @cache
 def exact(number, piles, scale, upward):
-    """Response of the plain integrator while the ground moves, at samples four times as dense."""
+    """Response of the plain integrator, somewhat longer than the ground moves, at samples four times as dense."""
     body, restitution = (PILES if piles else LONE)[number]
     level, lift = motions()
     at = np.arange((level.size - 1) * TIMES + 1) / TIMES
@@ -54,7 +54,7 @@ def exact(number, piles, scale, upward):
         DT / TIMES,
         restitution=restitution,
         vertical=scale * lift if upward else None,
-        duration=DT * 59,
+        duration=DT * 66,
     )
 
 
@@ -171,11 +171,10 @@ def test_an_ensemble_has_the_outcomes_and_peaks_of_the_plain_integrator(
             peak = max(theta.max() / right, -theta.min() / left)
             frequency = (body.lower if piles else body).frequency()
             between = (frequency * DT) ** 2 / 4 + 1e-6
-            # hops of less are closed unseen; later peaks are lower where the ground's last ones are
+            # hops of less are closed unseen; later peaks are lower where that is not of the last swing
             if peak > 1e-3:
                 told.add("rocks")
                 assert found.peak_rotation[(*at, k)] >= peak - between
-                early = len(theta) * 2 // 3
-                if np.abs(theta[:early]).max() > 1.5 * np.abs(theta[early:]).max():
+                if np.abs(theta).argmax() < 0.85 * len(theta):
                     assert found.peak_rotation[(*at, k)] <= peak + between
     assert told == expected
