@@ -496,6 +496,10 @@ def test_what_slides_off_its_face_or_turns_too_far_falls():
         gone = abs(shift) > 0.35
         assert step.off_the_edge(p, w, w.q, 1) == gone
         assert w.fails[1, step.FALL] == gone
+        # where both corners were over the face, the one that has passed its edge is looked at anew
+        w.kind[1] = solve.CORNER
+        step.least_margin(p, w, w.q, w.v, False)
+        assert w.fails[1, [step.EDGE, step.EDGE + 1]].tolist() == [shift < 0, shift > 0]
         w.slides[1] = 0
         step.least_margin(p, w, w.q, w.v, False)
         assert w.fails[1, step.FALL] == 0
@@ -910,7 +914,7 @@ def test_a_bilinear_spring_yields_at_its_strength_and_unloads_along_its_first_st
 
 
 def test_a_plate_stays_in_its_dish_while_its_friction_bears_the_slope_and_the_ground():
-    """µ N ≥ |M a + N u/R|: at rest up to a slope of µ (Zayas, Low and Mahin, 1990)."""
+    """µ N ≥ |M a + N u/R| (``docs/holding.md``, 4)."""
     dish = SlidingPendulum(mass=20.0, radius=1.0, friction=0.1)
     block = as_system(Block(0.4, 0.5, 80.0))
     p = plain(system_record(hold(block, support=dish), G))
