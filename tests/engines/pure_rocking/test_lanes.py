@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
+from scipy.optimize import brentq
 
 from ...mutants.plain import plain_library
 from ...oracle.rocking_model import pivots
@@ -20,6 +22,7 @@ from .plain_rocking import (
     plain,
     stacks,
     state_of,
+    taylor,
 )
 
 with plain_library():
@@ -68,6 +71,44 @@ def test_what_turns_alone_holds_the_other_contact_as_the_plain_model_says():
             assert at.per_angle == pytest.approx(side / critical)
             speed = 1.0 / (critical * frequency * H) ** 2
             assert at.per_speed == pytest.approx(speed)
+
+
+def test_the_other_contact_lets_go_where_the_plain_model_would_have_it_pull():
+    seen = set()
+    for rng, body, model in stacks(25, 6):
+        one, _, _ = constants_of(body)
+        for c in [c for c in STATES if 0 in c]:
+            side = np.array(c)
+            theta, omega = (side * 0.1).cumsum(), (side * rng.normal()).cumsum()
+            ends = (0.0, rng.normal(0, 40.0))
+            series = plain(np.zeros(1, taylor.SERIES)[0])
+            ramp = taylor.Step(H, ends[0], ends[1] - ends[0], G, 0.0)
+            taylor.fill_series(body, state_of(c, theta, omega, (0.0, G)), ramp, series)
+            lane = plain(np.zeros(1, stack_one.LANE)[0])
+            lane.flag[0], lane.was_left[0] = cases.NEARS, 1.0
+            lane.was_ground[0], lane.ground_end[0] = ends
+            lane.was_weight[0] = lane.weight_end[0] = 1.0
+            if c[0] == 0:
+                series.one.angle = series.two.angle
+            angle = Polynomial(series.one.angle)
+            series.gap = side.sum() * series.one.angle
+
+            def margin(tau, c=c, angle=angle, ends=ends, model=model):
+                turns = np.array([c[0] != 0, True])
+                at, rate = angle(tau) * turns, angle.deriv()(tau) / H * turns
+                return min(model.margins(c, at, rate, (ends[1] * tau, G)).values())
+
+            found = stack_one.next_contact_event(
+                one[eq.number_of(*c)], lane, 0, series, G
+            )
+            if margin(0.0) < 0:
+                continue
+            lets_go = margin(1.0) < 0
+            seen.add((c, lets_go))
+            assert found[1] == lets_go
+            if lets_go:
+                assert found[0] == pytest.approx(brentq(margin, 0.0, 1.0), abs=1e-9)
+    assert {(c, True) for c in STATES if 0 in c} < seen
 
 
 def test_the_landing_of_what_turns_alone_is_the_impact_of_unit_speed():
