@@ -20,7 +20,9 @@ from .cases import G, random_column, with_contacts
 with plain_library():
     from rockfrag.engines.planar import (
         bonds,
+        equations,
         integrate,
+        routh,
         solve,
         step,
         support,
@@ -945,6 +947,36 @@ def test_forces_that_no_motion_can_tell_apart_are_not_solved_for():
         w.closed[1] = ends
         solve.look_at(p, w, w.q)
         assert solve.solve_motion(p, w, w.q, w.v, RIGHT, UP) == told
+
+
+def test_joint_equations_are_solved_with_rows_exchanged_unless_two_ask_for_the_same():
+    rng, w = np.random.default_rng(16), plain(working_memory())
+    for m in (1, 2, 3, 5):
+        for again in (False, True):
+            a, b = rng.normal(size=(m, m)), rng.normal(size=m)
+            if m > 1:
+                # no equation can begin as it stands
+                np.fill_diagonal(a, 0.0)
+            if again:
+                a[-1] = 2 * a[0] if m > 1 else 0.0
+            w.matrix[:m, :m], w.joint[:m] = a, b
+            w.largest[:m] = np.abs(a).max(axis=1)
+            assert equations._eliminate(w, m, 1e-12) != again
+            if not again:
+                assert w.joint[:m] == pytest.approx(np.linalg.solve(a, b))
+
+
+def test_an_impact_is_of_one_contact_alone_where_one_end_is_closed():
+    column = with_contacts(random_column(np.random.default_rng(17), 3), [0.5] * 3)
+    p = plain(system_record(column, G))
+    ends = list(itertools.product(range(3), (0, 1)))
+    for count in (0, 1, 2):
+        for closed in itertools.combinations(ends, count):
+            w = plain(working_memory())
+            for k, end in closed:
+                w.closed[k, end] = 1
+            expected = closed[0] if count == 1 else (-1, -1)
+            assert routh.contact_alone(p, w) == expected
 
 
 def test_kinds_of_contact_events_are_told_apart():
