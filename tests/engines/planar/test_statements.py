@@ -979,6 +979,36 @@ def test_an_impact_is_of_one_contact_alone_where_one_end_is_closed():
             assert routh.contact_alone(p, w) == expected
 
 
+@pytest.mark.parametrize("projects", [False, True])
+def test_what_touches_is_shut_by_moving_all_above_it_and_goes_on_without_parting(
+    projects,
+):
+    rng, shut = np.random.default_rng(18), 0
+    for _ in range(25):
+        state = drawn(rng, True, 0)
+        p, w, n = state.p, state.w, state.count
+        w.touching[:n] = w.closed[:n]
+        q, still = rows(w.q, n), np.zeros((n, 3))
+        w.q[: 3 * n] = (q + rng.normal(0, 1e-3, (n, 3))).ravel()
+        spins = rows(w.v, n)[:, 2]
+        if projects:
+            impacts.project(p, w)
+        else:
+            integrate._shut(p, w)
+        q, v = rows(w.q, n), rows(w.v, n)
+        for k, end in state.closed():
+            assert sight(state, q, k, end)[1] == pytest.approx(0.0, abs=1e-12)
+            shut += 1
+            if projects:
+                (along, across), _ = rates(state, q, v, still, k, end)
+                assert abs(across) < 1e-5
+                assert abs(along) < 1e-5 or w.slides[k] or end != state.first(k)
+        # only what stands level on its face turns, with that
+        free = ~w.closed[:n].all(axis=1)
+        assert v[free, 2] == pytest.approx(spins[free])
+    assert shut > 30
+
+
 def test_kinds_of_contact_events_are_told_apart():
     names = "CHANGE IMPACT PARADOX FALLEN PASSING AT_WALL TIED BROKEN"
     kinds = [getattr(integrate, name) for name in names.split()] + [VELOCITY_STEP]
