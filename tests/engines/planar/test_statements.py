@@ -530,6 +530,19 @@ def test_a_gap_that_narrows_and_widens_again_is_looked_at():
     assert seen == {False, True}
 
 
+def test_a_body_that_turns_back_before_a_wall_is_looked_at_if_it_may_have_come_so_far():
+    block = as_system(Block(0.4, 1.0, 80.0))
+    for side, away, later in itertools.product((1, -1), (0.01, 0.03), (1.0, 0.0, -1.0)):
+        wall = Wall(0.2 + away, 0.0 if side > 0 else math.pi)
+        p, w = plain(system_record(hold(block, wall), G)), plain(working_memory())
+        w.q[:3], w.v[0], w.drive[:] = (0.0, 0.6, 0.0), side, -1
+        solve.look_at(p, w, w.q)
+        step.start_step(p, w)
+        w.q1, w.v1[0] = w.q, -side * later
+        # it moves at 1 m/s for 0.02 s at most
+        assert step.comes_near(p, w, 0.02) == (away < 0.02 and later > 0)
+
+
 def test_the_first_failure_of_a_flight_is_where_a_corner_comes_down():
     """A body that is thrown up: the gap of its lower corner is a parabola and a sine."""
     block = Block(0.4, 1.0, 80.0)
