@@ -992,6 +992,28 @@ def test_an_impact_is_of_one_contact_alone_where_one_end_is_closed():
             assert routh.contact_alone(p, w) == expected
 
 
+def test_a_case_begins_at_its_start_and_knows_nothing_of_the_one_before():
+    column = with_contacts(random_column(np.random.default_rng(19), 2), [0.5] * 2)
+    p = plain(system_record(column, G))
+    ledgers = "work friction_loss impact_loss tied"
+    counts = "leaning hits largest_impulse largest_force peak_rotation peak_velocity"
+    counts += " peak_slip slid flights impacts paradoxes overturned_body given_way"
+    for theta, shut in (
+        ([0.0, 0.0], [3, 3]),
+        ([0.2, 0.2], [2, 3]),
+        ([0.0, -0.2], [3, 1]),
+    ):
+        w, start = plain(working_memory()), np.array(posed(p, theta, [0.0, 0.1]))
+        for record, names in ((w, ledgers), (w.outcome, counts)):
+            for name in names.split():
+                record[name] = 7
+        integrate._begin(p, w, start)
+        assert np.array_equal(w.q, start[0]) and np.array_equal(w.v, start[1])
+        assert (w.closed[:2] @ (1, 2)).tolist() == shut
+        for record, names in ((w, ledgers), (w.outcome, counts)):
+            assert not any(np.any(record[name]) for name in names.split())
+
+
 @pytest.mark.parametrize("projects", [False, True])
 def test_what_touches_is_shut_by_moving_all_above_it_and_goes_on_without_parting(
     projects,
