@@ -481,6 +481,11 @@ def test_a_building_is_described_as_conservators_know_it():
     known = place_in({"first_period_s": 0.8, "damping_ratio": 0.01})
     assert find_modes(known.building).period[0] == pytest.approx(0.8)
     assert known.variants()[0].spread == 0.1
+    by_rule, as_given = (
+        catalogue().say(each.assumed[0].why["rule"]) for each in (heights, known)
+    )
+    assert "0.05" in by_rule and "0.05" not in as_given
+    assert place_in({"storey_height": "3 m"}, "1/1").building.heights == (3.0,)
     whole = {
         "storey_heights_m": [4, 4],
         "masses": ["200 t", "150 t"],

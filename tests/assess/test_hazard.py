@@ -58,6 +58,12 @@ def test_one_level_passes_through_its_return_period():
     curve = curve_of_one_level(PGA, 0.25, 475)
     assert curve.rate(0.25) == pytest.approx(1 / 475)
     assert curve.rate(0.5) == pytest.approx(1 / 475 / 8)
+    # a steeper one is lower above the level, and higher below it
+    steep, flat = curve.quantiles[0.16], curve.quantiles[0.84]
+    for factor in (0.8, 1.25):
+        rates = [float(each.rate(0.25 * factor)) for each in (steep, curve, flat)]
+        assert rates == sorted(rates, reverse=factor < 1)
+        assert len(set(rates)) == 3
 
 
 @pytest.mark.parametrize(("text", "words"), CASES["refused"])

@@ -9,7 +9,7 @@ from html import unescape
 import numpy as np
 import pytest
 
-from rockfrag import Block, overturns
+from rockfrag import Block, Stack, overturns
 from rockfrag.assess import findings, holding
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.export import as_json
@@ -25,6 +25,7 @@ from rockfrag.assess.standing.holders import (
     Pendulum,
     Putty,
     Springs,
+    fastened,
     holders_beside,
     nearest_edge,
     pads_of,
@@ -57,6 +58,16 @@ def tried(found):
         for each in found.mitigations
         if each.change.id == Text.HOLDS
     }
+
+
+def test_ties_lead_from_a_body_to_both_sides_alike_wherever_it_stands_on_its_pedestal():
+    statue = Block(0.3, 0.9, 60.0, depth=0.5)
+    for aside in (0.0, 0.08):
+        system = as_system(Stack(Block(0.6, 0.4, 200.0, depth=0.6), statue, aside))
+        ties = fastened(system, 0.01, Cords(500.0))
+        x, y, z = np.mean([tie.anchor for tie in ties], axis=0)
+        assert (x, y) == pytest.approx((aside, 0.0), abs=1e-12)
+        assert z == pytest.approx(0.4 + ties[0].point[2])
 
 
 def test_putty_must_bear_what_the_motions_pull_at_its_pads(found, few):
@@ -188,9 +199,9 @@ def test_what_is_known_of_a_holder_is_taken_as_it_is():
     assert Pendulum not in tries and Springs not in tries
     # what is fastened would hold an isolator fast
     assert Bracket not in tries and Cords not in tries
-    for fastened in (Bracket(300.0), Cords(300.0)):
-        assert {each.key for each in holders_beside([fastened])}.isdisjoint(
-            {"isolator", fastened.key}
+    for made_fast in (Bracket(300.0), Cords(300.0)):
+        assert {each.key for each in holders_beside([made_fast])}.isdisjoint(
+            {"isolator", made_fast.key}
         )
     for alone in ({"wall_height": "9 cm"}, {"cord_slack": "2 mm"}, springs):
         with pytest.raises(InputError, match=r"; give keys? .* too"):

@@ -14,7 +14,7 @@ from rockfrag.assess.request import make_request
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
 from rockfrag.records.motion import GroundMotion
-from rockfrag.system import Block
+from rockfrag.system import Block, Stack
 from rockfrag.system.mesh import read_shape
 
 from .conftest import asked
@@ -175,6 +175,10 @@ def test_changes_of_the_object_change_it_in_space(folder):
     np.testing.assert_allclose(
         np.diag(changed.tensor - as_it_is.tensor), [5, 5, 0], atol=1e-9
     )
+    # fixed to what it stands on it is another body, which is no scan
+    stack = Stack(Block(0.6, 0.4, 300.0), objects.block)
+    assert objects.solid(stack) is not None
+    assert objects.solid(stack.rigidly_joined()) is None
 
 
 def test_a_fine_round_base_keeps_as_many_corners_as_count(folder):

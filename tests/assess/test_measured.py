@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from rockfrag.assess.conversion import (
+    OF_THE_SITE,
     PRIOR,
+    UNKNOWN,
     Conversion,
     VelocityBySpectrum,
+    VelocityRelation,
     published_velocity,
     usual_distance,
 )
@@ -155,6 +158,21 @@ def test_a_spectral_acceleration_beside_pga_narrows_the_velocity(motions: Motion
     assert (level.measure, level.value, level.sa_1s) == (PGA, 0.3, 0.2)
     with pytest.raises(InputError, match="period of 1 s"):
         asked(**SIZES, sa=["0.3 s", "0.2 g"])
+
+
+def test_of_earthquakes_that_are_not_known_their_spread_counts_and_of_sites_what_they_share():
+    relation = VelocityRelation((0.3, 0.2, -0.1, 0.4), (6.5, 3.0, 6.0), 0.5)
+    slopes = dict(zip(UNKNOWN, relation.coefficients[1:], strict=True))
+    open_ones = [(slopes[name] * spread) ** 2 for name, spread in UNKNOWN.items()]
+    shared = OF_THE_SITE * 0.5**2
+    known = Records(magnitude=6.0, distance_km=20.0, vs30=400.0)
+    for given, parts in ((Records(), sum(open_ones)), (known, 0.0)):
+        for of_site in (False, True):
+            found = relation.unknown(given, of_site=of_site)
+            assert found**2 == pytest.approx(parts + of_site * shared)
+    # of too few records nothing says how the mean follows them
+    few = VelocityRelation((0.3,), (), 0.5)
+    assert few.unknown(known, of_site=False) ** 2 == pytest.approx(shared)
 
 
 def test_a_set_says_the_velocity_that_its_motions_have_for_a_measure():

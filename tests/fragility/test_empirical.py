@@ -22,7 +22,7 @@ from rockfrag.fragility.fractions import (
 )
 from rockfrag.fragility.ida_curves import outcome_bins, with_measures
 from rockfrag.fragility.measure_selection import area_under_curve
-from rockfrag.fragility.observations import observations_from_table
+from rockfrag.fragility.observations import cells, observations_from_table
 from rockfrag.shaketable.definitions import Swept, swept_of
 
 from .made import ida_of
@@ -77,9 +77,12 @@ def test_bins_hold_about_equal_numbers_and_stripes_keep_their_levels():
     cloud = fraction_in_bins(observations_from_table(table, "pga_g", motion=None))
     assert cloud.tests.sum() == 997 and cloud.tests.between(99, 100).all()
     assert (cloud.im_lower.to_numpy()[1:] > cloud.im_upper.to_numpy()[:-1]).all()
+    assert cloud.im.between(cloud.im_lower, cloud.im_upper).all()
     table["pga_g"] = rng.choice([0.2, 0.4, 0.8], 997)
     stripes = fraction_in_bins(observations_from_table(table, "pga_g", motion=None))
     assert stripes.im.to_numpy() == pytest.approx([0.2, 0.4, 0.8])
+    # as many values as cells have one each, however often they stand there
+    assert cells(np.array([1.0] * 9 + [2.0, 3.0]), 3)[1].tolist() == [1.0, 2.0, 3.0]
 
 
 RNG = 20261122
@@ -271,6 +274,25 @@ def test_parts_change_nothing_and_windows_are_those_of_the_table(counted):
         pd.testing.assert_frame_equal(windows, known, check_dtype=False)
     outcomes = [found.outcomes("pga_g").overturned for found in (whole, parts)]
     assert np.array_equal(*outcomes)
+
+
+def test_on_a_floor_its_own_motions_count_alone():
+    rng, levels, parts = np.random.default_rng(5), np.geomspace(0.05, 2.0, 30), []
+    about = {"object": "T", "pedestal": "NP", "overturned_body": ""}
+    for floor in ("hall", "loft"):
+        table = ida_of(rng.uniform(0.1, 1.0, 4), levels).assign(floor=floor, **about)
+        table["motion"] += floor
+        parts.append(list(swept_of(table)))
+    hall, loft = parts
+    names = [name for each in (hall + loft) for name in each.about["motion"].unique()]
+    measures = pd.DataFrame({"name": names, "pga_g": rng.uniform(0.1, 0.6, 8)})
+    alone, beside = (
+        count_ida(resurrections_of(some), some, measures, {"hall": ["pga_g"]})["hall"]
+        for some in (hall, hall + loft)
+    )
+    for name in ("im", "overturned", "trials"):
+        own, found = (getattr(each.outcomes("pga_g"), name) for each in (alone, beside))
+        assert np.array_equal(own, found)
 
 
 def test_binomial_limits_are_those_of_wilson():

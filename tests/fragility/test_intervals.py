@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.base.errors import InputError
 from rockfrag.fragility import censored, estimators, intervals
 from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval
 from rockfrag.fragility.empirical import TableIda
@@ -92,6 +93,13 @@ def test_limits_over_motions_of_shared_earthquakes_warn():
         "come from 4 earthquakes"
         in interval_over_motions(shared, over="motion").warnings[0]
     )
+
+
+@pytest.mark.parametrize("level", [0.0, 1.0, math.nan])
+def test_a_level_that_nothing_or_all_lies_within_is_refused(level):
+    data = observations_from_table(swept_motions(8), "amplitude_g")
+    with pytest.raises(InputError, match="lies between 0 and 1"):
+        interval_over_motions(data, level=level)
 
 
 def test_capacities_in_one_step_give_limits_of_the_step_and_a_beta_from_zero():

@@ -140,6 +140,17 @@ def test_a_table_in_which_all_survived_gives_a_bound_and_no_recommendation(tmp_p
     assert "None of 3 tests overturned" in result.table["warnings"].iloc[0]
 
 
+def test_limits_are_over_the_earthquakes_that_a_table_names(tmp_path):
+    rng, path = np.random.default_rng(2), tmp_path / "t.csv"
+    pga = np.exp(rng.normal(-1, 0.5, 60))
+    fell = (pga > 0.4 * np.exp(rng.normal(0, 0.3, 60))).astype(int)
+    event = [f"e{k % 12}" for k in range(60)]
+    pd.DataFrame({"pga_g": pga, "overturned": fell, "event": event}).to_csv(path)
+    found = fit_user_table(path, ["pga_g"], earthquake="event", replicates=5)
+    limits = found.fits["pga_g"].interval
+    assert (limits.over, limits.groups) == ("earthquake", 12)
+
+
 def test_the_granite_rock_follows_its_velocity(shared):
     path = shared / "measured" / "granite_rock_1.csv"
     measures = {"pga_g": ["pga_g"], "pgv_cm_s": PGV}

@@ -76,7 +76,11 @@ GROUPS = (
     ),
     Group(
         ("laws", "system"),
-        plain=("system", "engines/planar/test_laws.py"),
+        plain=(
+            "system",
+            "engines/planar/test_laws.py",
+            "engines/pure_rocking/test_statements.py",
+        ),
         compiled=(
             "engines/pure_rocking/test_restitution_laws.py",
             "engines/test_contract.py",

@@ -30,7 +30,7 @@ LIBRARIES = (
         "jinja2",
         "jsonschema",
     ),
-    *("trimesh", "pyarrow.parquet", "mpmath"),
+    *("trimesh", "pyarrow.parquet", "mpmath", "h5py"),
 )
 
 

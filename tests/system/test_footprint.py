@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from rockfrag.system.footprint import nearest_edge, reach
+from rockfrag.system.footprint import nearest_edge, pads_in_circle, reach
 
 TURN = 0.4
 
@@ -33,3 +33,9 @@ def test_of_a_regular_triangle_every_edge_is_half_a_corner_away():
     assert distance == pytest.approx(0.5)
     # of edges alike the first
     assert across == pytest.approx((0.5, math.sqrt(0.75)))
+
+
+def test_four_pads_in_a_circle_lie_at_their_part_of_its_radius():
+    wide, deep = pads_in_circle(0.4, 0.75)
+    assert wide == deep
+    assert math.hypot(wide, deep) == pytest.approx(0.75 * 0.4)

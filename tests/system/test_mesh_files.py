@@ -78,6 +78,10 @@ def test_a_box_in_gltf_has_its_volume(tmp_path: Path):
     path = written(tmp_path, gltf_of_a_box())
     assert read_shape(path, density=1000.0).volume == pytest.approx(0.24, rel=1e-6)
     assert files_of_mesh(path) == [path]
+    # and as a binary file
+    BOX.export(tmp_path / "box.glb")
+    shape = read_shape(tmp_path / "box.glb", density=1000.0)
+    assert shape.volume == pytest.approx(0.24, rel=1e-6)
 
 
 def test_a_buffer_is_read_from_the_folder_of_the_mesh_and_belongs_to_its_files(

@@ -13,7 +13,7 @@ from rockfrag.base.units import GRAVITY
 from ...mutants.plain import plain_library
 
 with plain_library():
-    from rockfrag.assess.core import demands, ordering, scales
+    from rockfrag.assess.core import demands, fractions, hazards, ordering, scales
 
 
 def test_numbers_are_sorted_and_summed_up_as_numpy_does():
@@ -30,6 +30,23 @@ def test_numbers_are_sorted_and_summed_up_as_numpy_does():
         assert ordering.variance(values) == pytest.approx(values.var())
     # of the first numbers alone
     assert ordering.quantile(np.array([1.0, 2.0, 9.0]), 2, 0.5) == 1.5
+
+
+def test_a_level_lies_between_the_points_of_its_hazard_curve_by_logarithms():
+    levels, rates = np.array([0.1, 0.2, 0.5, 1.0]), np.array([1e-1, 3e-2, 1e-3, 1e-4])
+    found = np.zeros(1)
+    for rate in (1e-1, 5e-2, 3e-2, 1e-2, 5e-4, 1e-4):
+        hazards.fill_level(levels, rates, rate, found)
+        log = np.interp(-math.log(rate), -np.log(rates), np.log(levels))
+        assert found[0] == pytest.approx(math.exp(log))
+
+
+def test_of_a_spread_a_part_lies_below_a_value_and_without_one_all_or_nothing():
+    for middle, spread in ((0.0, 0.1), (-0.4, 0.6), (1.0, 2.0)):
+        for value in (-1.0, 0.2, 1.3):
+            found = fractions._part(value, middle, spread)
+            assert found == pytest.approx(stats.norm.cdf(value, middle, spread))
+    assert [fractions._part(value, 0.3, 0.0) for value in (0.2, 0.3, 0.4)] == [0, 1, 1]
 
 
 def test_a_strength_is_enough_for_95_percent_of_the_motions_and_none_less_is():

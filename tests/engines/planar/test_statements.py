@@ -18,8 +18,20 @@ from ...oracle.standing import StandingBody, standing, turn
 from .cases import G, random_column, with_contacts
 
 with plain_library():
-    from rockfrag.engines.planar import bonds, solve, step, support, ties, walls
+    from rockfrag.engines.planar import (
+        bonds,
+        equations,
+        integrate,
+        routh,
+        solve,
+        step,
+        support,
+        ties,
+        walls,
+        witness,
+    )
     from rockfrag.engines.planar import impact as impacts
+    from rockfrag.engines.planar.engine import VELOCITY_STEP
     from rockfrag.engines.planar.records import posed, system_record, working_memory
     from rockfrag.engines.planar.search import Trial, prepare, try_mode
     from rockfrag.system import (
@@ -27,6 +39,7 @@ with plain_library():
         Block,
         Bond,
         Column,
+        SlidingPendulum,
         Tie,
         Wall,
         as_system,
@@ -187,6 +200,9 @@ def test_ends_are_where_geometry_has_them():
                 assert (x, y) == pytest.approx((px, py), abs=1e-12)
                 assert (tx, ty, -ty, tx) == pytest.approx(axes, abs=1e-12)
                 assert gap == pytest.approx(across, abs=1e-12)
+                # the witness of impacts sees the same
+                seen = witness._place(p, w.q, k, end)
+                assert seen == pytest.approx((px, py, *axes[:2], across), abs=1e-12)
                 found = [
                     solve.rate(p, w.q, w.v, k, x, y, dx, dy)
                     for dx, dy in ((tx, ty), (-ty, tx))
@@ -482,6 +498,10 @@ def test_what_slides_off_its_face_or_turns_too_far_falls():
         gone = abs(shift) > 0.35
         assert step.off_the_edge(p, w, w.q, 1) == gone
         assert w.fails[1, step.FALL] == gone
+        # where both corners were over the face, the one that has passed its edge is looked at anew
+        w.kind[1] = solve.CORNER
+        step.least_margin(p, w, w.q, w.v, False)
+        assert w.fails[1, [step.EDGE, step.EDGE + 1]].tolist() == [shift < 0, shift > 0]
         w.slides[1] = 0
         step.least_margin(p, w, w.q, w.v, False)
         assert w.fails[1, step.FALL] == 0
@@ -508,6 +528,19 @@ def test_a_gap_that_narrows_and_widens_again_is_looked_at():
         assert step.comes_near(p, w, 0.01) == expected
         seen.add(expected)
     assert seen == {False, True}
+
+
+def test_a_body_that_turns_back_before_a_wall_is_looked_at_if_it_may_have_come_so_far():
+    block = as_system(Block(0.4, 1.0, 80.0))
+    for side, away, later in itertools.product((1, -1), (0.01, 0.03), (1.0, 0.0, -1.0)):
+        wall = Wall(0.2 + away, 0.0 if side > 0 else math.pi)
+        p, w = plain(system_record(hold(block, wall), G)), plain(working_memory())
+        w.q[:3], w.v[0], w.drive[:] = (0.0, 0.6, 0.0), side, -1
+        solve.look_at(p, w, w.q)
+        step.start_step(p, w)
+        w.q1, w.v1[0] = w.q, -side * later
+        # it moves at 1 m/s for 0.02 s at most
+        assert step.comes_near(p, w, 0.02) == (away < 0.02 and later > 0)
 
 
 def test_the_first_failure_of_a_flight_is_where_a_corner_comes_down():
@@ -893,6 +926,128 @@ def test_a_bilinear_spring_yields_at_its_strength_and_unloads_along_its_first_st
             p.spring_stiffness * at + force
         )
     assert w.yields == -1
+
+
+def test_a_plate_stays_in_its_dish_while_its_friction_bears_the_slope_and_the_ground():
+    """µ N ≥ |M a + N u/R| (``docs/holding.md``, 4)."""
+    dish = SlidingPendulum(mass=20.0, radius=1.0, friction=0.1)
+    block = as_system(Block(0.4, 0.5, 80.0))
+    p = plain(system_record(hold(block, support=dish), G))
+    p.static[1] = 0.9
+    told = set()
+    for u, ground in itertools.product((-0.15, -0.05, 0.05, 0.15), (-0.8, 0.0, 0.8)):
+        w = plain(working_memory())
+        w.q, w.drive[:], w.kind[:] = p.standing, -1, 1
+        w.q[[0, 3]] += u
+        w.whole[0], w.closed[:2], w.touching[:2] = support.GUIDED, 1, 1
+        w.along[:2] = w.against[:2] = p.static[:2]
+        trial = Trial(ground, 0.0, False, p.weight, G)
+        solve.look_at(p, w, w.q)
+        prepare(p, w, trial)
+        stays = try_mode(p, w, trial) >= 0
+        assert stays == (abs(ground / G + u) <= 0.1)
+        told.add((u < 0, ground < 0, stays))
+    assert len(told) >= 6
+
+
+def test_forces_that_no_motion_can_tell_apart_are_not_solved_for():
+    """A block shut at both ends at the ground and at a wall: six unknowns, three motions."""
+    block = as_system(Block(0.4, 1.0, 80.0))
+    wall = Wall(0.2, 0.0, friction=0.3)
+    p, w = plain(system_record(hold(block, wall), G)), plain(working_memory())
+    w.q, w.drive[:], w.kind[:], w.closed[0] = p.standing, -1, 1, 1
+    for ends, told in ((0, True), (1, False)):
+        w.closed[1] = ends
+        solve.look_at(p, w, w.q)
+        assert solve.solve_motion(p, w, w.q, w.v, RIGHT, UP) == told
+
+
+def test_joint_equations_are_solved_with_rows_exchanged_unless_two_ask_for_the_same():
+    rng, w = np.random.default_rng(16), plain(working_memory())
+    for m in (1, 2, 3, 5):
+        for again in (False, True):
+            a, b = rng.normal(size=(m, m)), rng.normal(size=m)
+            if m > 1:
+                # no equation can begin as it stands
+                np.fill_diagonal(a, 0.0)
+            if again:
+                a[-1] = 2 * a[0] if m > 1 else 0.0
+            w.matrix[:m, :m], w.joint[:m] = a, b
+            w.largest[:m] = np.abs(a).max(axis=1)
+            assert equations._eliminate(w, m, 1e-12) != again
+            if not again:
+                assert w.joint[:m] == pytest.approx(np.linalg.solve(a, b))
+
+
+def test_an_impact_is_of_one_contact_alone_where_one_end_is_closed():
+    column = with_contacts(random_column(np.random.default_rng(17), 3), [0.5] * 3)
+    p = plain(system_record(column, G))
+    ends = list(itertools.product(range(3), (0, 1)))
+    for count in (0, 1, 2):
+        for closed in itertools.combinations(ends, count):
+            w = plain(working_memory())
+            for k, end in closed:
+                w.closed[k, end] = 1
+            expected = closed[0] if count == 1 else (-1, -1)
+            assert routh.contact_alone(p, w) == expected
+
+
+def test_a_case_begins_at_its_start_and_knows_nothing_of_the_one_before():
+    column = with_contacts(random_column(np.random.default_rng(19), 2), [0.5] * 2)
+    p = plain(system_record(column, G))
+    ledgers = "work friction_loss impact_loss tied"
+    counts = "leaning hits largest_impulse largest_force peak_rotation peak_velocity"
+    counts += " peak_slip slid flights impacts paradoxes overturned_body given_way"
+    for theta, shut in (
+        ([0.0, 0.0], [3, 3]),
+        ([0.2, 0.2], [2, 3]),
+        ([0.0, -0.2], [3, 1]),
+    ):
+        w, start = plain(working_memory()), np.array(posed(p, theta, [0.0, 0.1]))
+        for record, names in ((w, ledgers), (w.outcome, counts)):
+            for name in names.split():
+                record[name] = 7
+        integrate._begin(p, w, start)
+        assert np.array_equal(w.q, start[0]) and np.array_equal(w.v, start[1])
+        assert (w.closed[:2] @ (1, 2)).tolist() == shut
+        for record, names in ((w, ledgers), (w.outcome, counts)):
+            assert not any(np.any(record[name]) for name in names.split())
+
+
+@pytest.mark.parametrize("projects", [False, True])
+def test_what_touches_is_shut_by_moving_all_above_it_and_goes_on_without_parting(
+    projects,
+):
+    rng, shut = np.random.default_rng(18), 0
+    for _ in range(25):
+        state = drawn(rng, True, 0)
+        p, w, n = state.p, state.w, state.count
+        w.touching[:n] = w.closed[:n]
+        q, still = rows(w.q, n), np.zeros((n, 3))
+        w.q[: 3 * n] = (q + rng.normal(0, 1e-3, (n, 3))).ravel()
+        spins = rows(w.v, n)[:, 2]
+        if projects:
+            impacts.project(p, w)
+        else:
+            integrate._shut(p, w)
+        q, v = rows(w.q, n), rows(w.v, n)
+        for k, end in state.closed():
+            assert sight(state, q, k, end)[1] == pytest.approx(0.0, abs=1e-12)
+            shut += 1
+            if projects:
+                (along, across), _ = rates(state, q, v, still, k, end)
+                assert abs(across) < 1e-5
+                assert abs(along) < 1e-5 or w.slides[k] or end != state.first(k)
+        # only what stands level on its face turns, with that
+        free = ~w.closed[:n].all(axis=1)
+        assert v[free, 2] == pytest.approx(spins[free])
+    assert shut > 30
+
+
+def test_kinds_of_contact_events_are_told_apart():
+    names = "CHANGE IMPACT PARADOX FALLEN PASSING AT_WALL TIED BROKEN"
+    kinds = [getattr(integrate, name) for name in names.split()] + [VELOCITY_STEP]
+    assert len(set(kinds)) == len(kinds)
 
 
 def test_kinetic_energy_is_that_of_all_bodies():

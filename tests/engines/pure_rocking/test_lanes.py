@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
+from scipy.optimize import brentq
 
 from ...mutants.plain import plain_library
 from ...oracle.rocking_model import pivots
@@ -20,14 +22,17 @@ from .plain_rocking import (
     plain,
     stacks,
     state_of,
+    taylor,
 )
 
 with plain_library():
-    from rockfrag.engines.pure_rocking.kernels.lanes import case as cases
     from rockfrag.engines.pure_rocking.kernels.lanes import (
+        block,
         stack_constants,
         stack_one,
+        stack_two,
     )
+    from rockfrag.engines.pure_rocking.kernels.lanes import case as cases
 
 H = 0.004  # interval of the samples [s]
 
@@ -68,6 +73,44 @@ def test_what_turns_alone_holds_the_other_contact_as_the_plain_model_says():
             assert at.per_speed == pytest.approx(speed)
 
 
+def test_the_other_contact_lets_go_where_the_plain_model_would_have_it_pull():
+    seen = set()
+    for rng, body, model in stacks(25, 6):
+        one, _, _ = constants_of(body)
+        for c in [c for c in STATES if 0 in c]:
+            side = np.array(c)
+            theta, omega = (side * 0.1).cumsum(), (side * rng.normal()).cumsum()
+            ends = (0.0, rng.normal(0, 40.0))
+            series = plain(np.zeros(1, taylor.SERIES)[0])
+            ramp = taylor.Step(H, ends[0], ends[1] - ends[0], G, 0.0)
+            taylor.fill_series(body, state_of(c, theta, omega, (0.0, G)), ramp, series)
+            lane = plain(np.zeros(1, stack_one.LANE)[0])
+            lane.flag[0], lane.was_left[0] = cases.NEARS, 1.0
+            lane.was_ground[0], lane.ground_end[0] = ends
+            lane.was_weight[0] = lane.weight_end[0] = 1.0
+            if c[0] == 0:
+                series.one.angle = series.two.angle
+            angle = Polynomial(series.one.angle)
+            series.gap = side.sum() * series.one.angle
+
+            def margin(tau, c=c, angle=angle, ends=ends, model=model):
+                turns = np.array([c[0] != 0, True])
+                at, rate = angle(tau) * turns, angle.deriv()(tau) / H * turns
+                return min(model.margins(c, at, rate, (ends[1] * tau, G)).values())
+
+            found = stack_one.next_contact_event(
+                one[eq.number_of(*c)], lane, 0, series, G
+            )
+            if margin(0.0) < 0:
+                continue
+            lets_go = margin(1.0) < 0
+            seen.add((c, lets_go))
+            assert found[1] == lets_go
+            if lets_go:
+                assert found[0] == pytest.approx(brentq(margin, 0.0, 1.0), abs=1e-9)
+    assert {(c, True) for c in STATES if 0 in c} < seen
+
+
 def test_the_landing_of_what_turns_alone_is_the_impact_of_unit_speed():
     for _, body, model in stacks(22, 10):
         _, _, impacts = constants_of(body)
@@ -95,6 +138,23 @@ def test_extremes_of_a_lane_are_those_of_the_phase_plane():
     assert (ratio, fast, near) == pytest.approx((0.5, 0.2, 0.25 + 4.0 * 0.04))
     lane.was_ratio[2], lane.was_fast[2], lane.was_near[2] = 0.7, 0.3, 0.1
     assert stack_one.nearest(lane, 2, -0.15, 0.2) == pytest.approx((0.7, 0.3, 0.1))
+    # of two bodies it is the nearer one's distance
+    lane = plain(np.zeros(1, stack_two.LANE)[0])
+    lane.per_angle1[2], lane.per_speed1[2] = -1 / 0.3, 4.0
+    lane.per_angle2[2], lane.per_speed2[2] = 1 / 0.2, 9.0
+    lane.was_near[2] = 2.0
+    for angle, rate in ((0.02, 0.0), (0.19, 0.05)):
+        *ratios, fast, near = stack_two.nearest(lane, 2, (-0.15, 0.2, angle, rate))
+        assert (*ratios, fast) == pytest.approx((0.5, 5 * angle, rate))
+        nearer = min(0.25 + 4.0 * 0.04, (1 - 5 * angle) ** 2 + 9.0 * rate**2)
+        assert near == pytest.approx(nearer)
+    # a lone block's angle is counted from balance
+    lane = plain(np.zeros(1, block.LANE)[0])
+    lane.per_angle[2], lane.per_speed[2] = 1 / 0.3, 4.0
+    lane.low[2], lane.fast[2], lane.near[2] = 1.0, 0.05, 2.0
+    block._keep_extremes(lane, 2, 0.15, -0.2)
+    found = lane.low[2], lane.fast[2], lane.near[2]
+    assert found == pytest.approx((0.5, 0.2, 0.25 + 4.0 * 0.04))
 
 
 def hop_of(rng, c, contact, speed):
@@ -165,6 +225,9 @@ def test_hops_of_a_geometric_series_are_closed_if_it_ends_in_time(contact, upwar
             told.add("closes")
             assert closes(1.001 * lasts)
             assert not closes(0.999 * lasts)
+            # of what loses hardly anything in two impacts no end is foreseen
+            old_speed = 1e-5 * H * math.sqrt(parts[0] / parts[1] / 0.99)
+            assert not closes(1e9, hop=hop._replace(old=-old_speed))
             # the ground that pulls it open comes within the time, twice over
             samples[4:] = 1e4
             later = closes(1e9)

@@ -263,6 +263,23 @@ def test_impacts_are_those_of_the_plain_model(law):
     assert gave_way > 0 or law != "ratio"
 
 
+def test_what_an_impact_leaves_shut_is_pushed_where_its_resultant_passes_the_base():
+    seen = set()
+    for rng, body, model in stacks(19, 30):
+        for new in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+            # the open contact changes its pivot, the other one was shut or open before
+            old, theta = [-c or int(rng.choice([0, 1, -1])) for c in new], np.zeros(2)
+            opening = -np.array(old) * np.abs(rng.normal(size=2))
+            before = state_of(old, theta, opening.cumsum())
+            after = impact.stuck(body, before, *new)
+            found = impact._pushed(body, before, new, after, pivots(new))
+            assert found == model._presses(
+                new, tuple(old), pivots(new), theta, after, opening.cumsum()
+            )
+            seen.add((new, found))
+    assert len(seen) == 8
+
+
 def test_a_lone_block_that_comes_down_keeps_the_ratio_that_it_was_given():
     block = random_block(np.random.default_rng(9))
     for ratio in (0.3, 0.7):
@@ -358,8 +375,10 @@ def test_a_contact_closes_at_the_first_root_of_its_opening():
                 or len(falls) > 1
             )
     assert len(seen) == 4
-    # what leaves zero downwards has closed at once
-    assert roots.crossing_time(np.array([0.0, -1.0, *6 * [0.0]])) == 0.0
+    # what leaves zero downwards has closed at once, unless it has come back by the end
+    down = np.array([0.0, -1.0, *6 * [0.0]])
+    assert roots.crossing_time(down) == roots.closing_time(down, 1.0) == 0.0
+    assert roots.closing_time(down + 2.0 * np.eye(8)[2], 1.0) == roots.NEVER
     # what leaves zero without speed, upwards, comes back where its bend has it
     back = roots.crossing_time(np.array([0.0, 0.0, 1.0, -2.0, *4 * [0.0]]))
     assert back == pytest.approx(0.5)

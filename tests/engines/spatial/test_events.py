@@ -72,6 +72,18 @@ def drum(off=(0.05, -0.03), radius=0.2, height=0.4):
     return plain(body)
 
 
+def test_a_body_that_meets_walls_alone_is_held_by_no_tie():
+    rng, wall = np.random.default_rng(22), Wall(2.0, 0.0)
+    tie = Tie((0.0, 0.0, 1.0), (2.0, 0.0, 1.2), 1e4)
+    for holders, alone in (
+        ((), False),
+        ((wall,), True),
+        ((wall, tie), False),
+        ((tie,), False),
+    ):
+        assert solid.meets_walls_alone(uneven(rng, *holders)) == alone
+
+
 def margins_of_rest(gravity, r):
     """Moment over each edge, over the height of 0.6 m, and what friction leaves: positive while rest is kept."""
     corners = CORNERS @ r[:2, :2].T
