@@ -454,11 +454,12 @@ def _is_settled(case, worker, g):
 
 @inlined_kernel
 def close_one(case, worker, ground, g, motions):
-    """Take two rocking blocks through the closing of one contact by their constants; return whether that works.
+    """Take two rocking blocks through an impact at one contact; return whether that could be done here.
 
-    ``ground``: whether it is the ground's contact, not the interface's. The contact comes off on its other pivot,
-    or stays closed where its hops are sure to be short (``chatter.may_close``). Where it does not come off nothing
-    is changed, and ``general_impact`` has to do it.
+    ``ground``: whether it is the ground's contact, not the interface's. Of each choice of pivots ``worker`` keeps
+    what an impact needs. The contact comes off on its other pivot, as rocking goes on, or is shut where the hops
+    that follow are sure to be short (``chatter.may_close``). Where it would not come off nothing is changed, and
+    ``general_impact`` has to look at both contacts.
     """
     c1, c2, omega1, omega2 = case.c1, case.c2, case.omega1, case.omega2
     constants, number = worker.twos[case.slot], equations.number_of(c1, c2)
