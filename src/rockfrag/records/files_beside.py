@@ -3,10 +3,14 @@
 In: paths of records. Out: paths of all files on which their motions depend. Docs: ``docs/formats.md``.
 """
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
 from rockfrag.records.parsing.text_file import read_head
+
+# The "time series" of a PEER header is none
+_SCRIPT = re.compile(rb"timeSeries|Series\s+-", re.I)
 
 
 def with_files_beside(records: Iterable[Path]) -> list[Path]:
@@ -32,7 +36,7 @@ def _beside(record: Path) -> list[Path]:
     if b"\x00" in head:
         # counts of a recorder, whose channels a StationXML describes
         return sorted(record.parent.glob("*.xml"))
-    if b"series" not in head.lower():
+    if not _SCRIPT.search(head):
         return []
     # it loads ObsPy, which few studies need before their first job
     from rockfrag.records.formats.opensees import files_named
