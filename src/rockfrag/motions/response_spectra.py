@@ -282,13 +282,18 @@ def _accelerations(
 
 @cached_njit()
 def _responses(
-    u: float, v: float, known: tuple[float, float, float], s: float, c: float, k: float
+    at: tuple[float, float],
+    known: tuple[float, float, float],
+    s: float,
+    c: float,
+    k: float,
 ) -> tuple[tuple[float, float, float], ...]:
     """Value, slope and curvature of u, of u' and of the total acceleration, at one end of a step.
 
-    ``known``: :func:`_accelerations` there; ``s``: slope of the ground's acceleration in that step [m/s³].
+    ``at``: u and u' there; ``known``: :func:`_accelerations` there; ``s``: slope of the ground's acceleration in
+    the step [m/s³].
     """
-    total, relative, jerk = known
+    (u, v), (total, relative, jerk) = at, known
     third = jerk - s
     fourth = -c * third - k * relative
     return (u, v, relative), (v, relative, third), (total, jerk, fourth)
@@ -328,8 +333,8 @@ def _peaks(
             start = (u, v, a, s)
             u1, v1 = _end_of_step(matrix, start)
             known1 = _accelerations(u1, v1, a + step * s, c, k)
-            first = _responses(u, v, known, s, c, k)
-            last = _responses(u1, v1, known1, s, c, k)
+            first = _responses((u, v), known, s, c, k)
+            last = _responses((u1, v1), known1, s, c, k)
             for order in range(3):
                 between = peak_within(
                     order, first[order], last[order], start, c, k, step
