@@ -200,22 +200,26 @@ PLAIN = {"LC_ALL": "C", "PYTHONUTF8": "0"}
 """Environment of a machine that speaks no language."""
 
 
-def run_table(folder: Path, **more: str) -> str:
-    """Run the study of a table by the launcher in its folder, in a plain environment; what it said."""
-    run = (*LAUNCHER, "study.yaml", "--cores", "1", "--logger", "rockfrag")
+def run_table(folder: Path, study: str, *targets: str, **more: str) -> str:
+    """Run the study of a table by the launcher in a folder, in a plain environment; what it said."""
+    run = (*LAUNCHER, study, "--cores", "1", *targets, "--logger", "rockfrag")
     return finished(called(folder, *run, env=os.environ | PLAIN | more)).stderr
+
+
+NAMED = "Köln 像"
+"""A folder whose name is not of plain letters."""
 
 
 @pytest.fixture(scope="module")
 def table_study(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a study of a table that has run, whose name is not of plain letters."""
-    folder = tmp_path_factory.mktemp("a table") / "Köln 像"
-    folder.mkdir()
-    write_synthetic(folder)
-    write_example(folder, "synthetic.csv", replicates=20)
-    said = run_table(folder)
+    """The folder in which the study of a table has run that lies in a folder ``NAMED`` there."""
+    above = tmp_path_factory.mktemp("a table")
+    (above / NAMED).mkdir()
+    write_synthetic(above / NAMED)
+    write_example(above / NAMED, "synthetic.csv", replicates=20)
+    said = run_table(above, f"{NAMED}/study.yaml")
     assert "Traceback" not in said and "Error" not in said
-    return folder
+    return above
 
 
 def test_a_synthetic_table_runs_from_csv_to_report(table_study: Path):
@@ -234,27 +238,20 @@ def test_a_synthetic_table_runs_from_csv_to_report(table_study: Path):
 
 def test_names_are_read_in_whatever_language_the_machine_speaks(table_study: Path):
     command = (sys.executable, "-m", "rockfrag.cli.main", "check-config")
-    checked = called(table_study, *command, "study.yaml", env=os.environ | PLAIN)
+    folder = table_study / NAMED
+    checked = called(folder, *command, "study.yaml", env=os.environ | PLAIN)
     assert checked.returncode == 0
 
 
 def test_an_older_table_in_the_place_of_another_is_read(table_study: Path):
-    table = table_study / "synthetic.csv"
-    curves = table_study / "results" / "measured-example" / "fragility.csv"
+    table = table_study / NAMED / "synthetic.csv"
+    target = Path("results") / "measured-example" / "fragility.csv"
+    curves = table_study / target
     kept, first = table.read_bytes(), curves.read_bytes()
     try:
         table.write_bytes(b"".join(kept.splitlines(keepends=True)[:120]))
         os.utime(table, (0, 0))
-        finished(
-            called(
-                table_study,
-                *LAUNCHER,
-                "study.yaml",
-                "--cores",
-                "1",
-                str(curves.relative_to(table_study)),
-            )
-        )
+        run_table(table_study, f"{NAMED}/study.yaml", str(target))
         assert curves.read_bytes() != first
     finally:
         table.write_bytes(kept)
@@ -266,7 +263,7 @@ def test_a_home_that_may_not_be_written_is_none_of_a_study_s_concern(tmp_path: P
     write_example(tmp_path, "synthetic.csv", replicates=20)
     # nobody makes folders there, whatever the permissions
     nowhere = {"HOME": "/proc/nothing", "XDG_CACHE_HOME": "/proc/nothing/cache"}
-    assert "Traceback" not in run_table(tmp_path, **nowhere)
+    assert "Traceback" not in run_table(tmp_path, "study.yaml", **nowhere)
     assert (tmp_path / "results" / "measured-example" / "report.html").is_file()
 
 
