@@ -1,6 +1,7 @@
 """What a user measured and says beside the sizes: tilt tests, free rocking, spectra and the ground of the site."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,8 +11,10 @@ from rockfrag.assess.conversion import (
     PRIOR,
     UNKNOWN,
     Conversion,
+    Site,
     VelocityBySpectrum,
     VelocityRelation,
+    find_conversion,
     published_velocity,
     usual_distance,
 )
@@ -19,11 +22,14 @@ from rockfrag.assess.core.velocity import spread_of_mean
 from rockfrag.assess.hazard.curve import PGA, SA_1S, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Records
+from rockfrag.assess.standing.scanned import ON_POINTS
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
+from rockfrag.campaign.standing import unknowns_of
+from rockfrag.fragility.model_error import SCAN
 from rockfrag.motions.conditional_velocity import BY_PGA
 
-from .conftest import asked
+from .conftest import asked, outcomes_of
 
 SIZES = {"width": "35 cm", "height": "1.2 m", "mass": "200 kg", "pga": "0.3 g"}
 
@@ -158,6 +164,36 @@ def test_a_spectral_acceleration_beside_pga_narrows_the_velocity(motions: Motion
     assert (level.measure, level.value, level.sa_1s) == (PGA, 0.3, 0.2)
     with pytest.raises(InputError, match="period of 1 s"):
         asked(**SIZES, sa=["0.3 s", "0.2 g"])
+
+
+def test_of_chosen_motions_the_velocity_is_that_of_all_among_which_they_were_chosen(
+    motions: MotionSet,
+):
+    """Whichever are chosen, the earthquakes of the site are those of the whole set."""
+    all_ratios = motions.log_ratios(PGA)
+    relation = VelocityRelation.of(motions.about, all_ratios)
+    of_floor = Site(Records(on_floor=True), asked(**SIZES).level, ())
+    for kept in (slice(0, 8), slice(8, 24)):
+        ground, base = motions.ground[kept], motions.base[kept]
+        few = replace(
+            motions, ground=ground, base=base, pairs=(), library=motions.ground
+        )
+        # it topples from a velocity on
+        levels, ratios = np.geomspace(0.05, 5.0, 40), few.log_ratios(PGA)
+        fell = levels * np.exp(ratios)[:, np.newaxis] >= 0.05
+        outcomes = outcomes_of(fell, levels, few.earthquakes, all_rock=True)
+        found = find_conversion(outcomes, few, of_floor, by_statics=True)
+        assert found.spread == pytest.approx(relation.unknown(Records(), of_site=False))
+
+
+def test_on_points_a_scan_loses_in_impacts_what_arrangements_of_scans_lose():
+    """Middle and standard deviation of a uniform distribution."""
+    drawn = unknowns_of(SCAN)["restitution_ratio"]
+    low, high = drawn(0.0), drawn(1.0)
+    middle = ON_POINTS["restitution_factor"]
+    assert middle == pytest.approx((low + high) / 2)
+    spread = (high - low) / math.sqrt(12) / middle
+    assert ON_POINTS["restitution"] == pytest.approx(spread, abs=0.005)
 
 
 def test_of_earthquakes_that_are_not_known_their_spread_counts_and_of_sites_what_they_share():

@@ -1,5 +1,7 @@
 """Which motions shake an object: pairs of components, what a set says of itself, and what shakes nothing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from rockfrag.assess.outcomes import find_directions
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
 from rockfrag.assess.rules import RULES, check_rules
+from rockfrag.assess.standing.planar import Planar
 from rockfrag.base.errors import InputError
 
 from .conftest import asked, outcomes_of
@@ -43,6 +46,33 @@ def test_of_directions_no_fraction_is_told_where_no_level_is_asked(few: MotionSe
     at = find_directions(objects, few, PGA, 0.4)
     assert 0 < at.fraction <= at.worst_fraction <= 1
     assert at.records == len(few.pairs)
+
+
+class Aside(Planar):
+    """An object that stands 3 cm off the middle of its pedestal."""
+
+    def system_of(self, body):
+        system = super().system_of(body)
+        *below, top = system.contacts
+        return replace(system, contacts=(*below, replace(top, offset=(0.03, 0.0))))
+
+
+def test_records_turned_round_come_from_the_same_directions(few: MotionSet):
+    """Of all directions together nothing changes, for what is not alike on both sides either."""
+    pedestal = {"width": "36 cm", "height": "90 cm", "mass": "100 kg"}
+    made = asked(**STATUE, pedestal=pedestal).objects
+    off_the_middle = Aside(made.block, made.plane, made.under)
+    one_sided = asked(**STATUE, pedestal=pedestal, cg_offset="3 cm").objects
+    two = replace(few, ground=few.ground[:4], base=few.base[:4], pairs=few.pairs[:2])
+    turned_round = [
+        replace(motion, acceleration=-motion.acceleration) for motion in two.base
+    ]
+    for objects in (off_the_middle, one_sided):
+        found, other = (
+            find_directions(objects, each, PGA, 0.4)
+            for each in (two, replace(two, base=tuple(turned_round)))
+        )
+        assert found == other and 0 < found.fraction < 1
 
 
 def test_a_rule_takes_the_weaker_of_a_statue_and_of_what_it_is_fixed_to(few: MotionSet):
