@@ -10,16 +10,18 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from scipy.integrate import RK45
+from scipy.integrate import RK45, solve_ivp
 from scipy.optimize import brentq
 
 from ...mutants.plain import plain_library
+from ...oracle import witness as other_witness
 from ...oracle.standing import StandingBody, standing, turn
 from .cases import G, random_column, with_contacts
 
 with plain_library():
     from rockfrag.engines.planar import (
         bonds,
+        carried,
         equations,
         integrate,
         routh,
@@ -1056,3 +1058,174 @@ def test_kinetic_energy_is_that_of_all_bodies():
     v = rows(state.w.v, state.count)
     expected = (state.masses * v * v).sum() / 2
     assert impacts.kinetic_energy(state.p, state.w.v) == pytest.approx(expected)
+
+
+def test_an_outline_is_left_to_the_side_to_which_a_body_is_turned():
+    """A body whose centre is aside falls sooner to that side."""
+    block = Block(0.4, 1.0, 80.0, cg_offset=0.05)
+    p, w = plain(system_record(as_system(block), G)), plain(working_memory())
+    for angle, arm in ((0.02, 0.15), (-0.02, 0.25)):
+        w.q[2] = angle
+        assert integrate._critical(p, w, 0) == pytest.approx(math.atan(arm / 0.5))
+
+
+def test_pads_of_a_bond_are_apart_along_the_plane():
+    bond = Bond(900.0, 500.0, (0.15, 0.1))
+    p = system_record(hold(as_system(Block(0.4, 1.0, 80.0)), bonds=bond), G)
+    assert p["bond_spread"][0] == 0.15
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_what_slid_before_an_event_slides_on_the_same_way(way):
+    """Its ends touch as it comes down, none of them shut yet; friction µ m g brakes it."""
+    p = plain(system_record(as_system(Block(0.4, 0.3, 80.0)), G))
+    w = plain(working_memory())
+    p.static[0] = p.kinetic[0] = 0.5
+    w.q, w.drive[:], w.kind[:], w.touching[0] = p.standing, -1, 1, 1
+    w.v[0] = 0.8 * way
+    solve.look_at(p, w, w.q)
+    impacts.settle(p, w, 0.0, 0.0, False)
+    assert w.closed[0].all() and w.slides[0] == way
+    assert w.out[:3] == pytest.approx((-way * 0.5 * G, 0.0, 0.0), abs=1e-9)
+
+
+def test_a_corner_that_hangs_beside_its_face_is_no_fall_as_long_as_the_edge_bears():
+    """The body has slid over the edge and leans there; the corner is lower than the face."""
+    column = Column((Block(0.4, 0.2, 30.0), Block(0.6, 0.4, 20.0)))
+    p, w = plain(system_record(as_system(column), G)), plain(working_memory())
+    theta = 0.2
+    flat, _ = posed(p, [0.0, theta], [0.0, 0.0])
+    w.q, w.closed[0], w.closed[1, 1], w.slides[1] = flat, 1, 1, 1
+    # its corner lies on the edge then; it goes on along its base
+    w.q[3:5] += 0.05 * np.array([math.cos(theta), -math.sin(theta)])
+    w.normal[:] = 50.0
+    solve.look_at(p, w, w.q)
+    w.kind[1, 1] = solve.end_of(p, w, w.q, 1, 1, -1)[6]
+    assert w.kind[1, 1] == 0
+    assert step._margin_of_closed_end(p, w, w.q, 1, 1, True) >= 0.0
+    assert not w.fails[1].any()
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_what_touches_ground_and_wall_is_shut_at_both(side):
+    block = as_system(Block(0.4, 1.0, 80.0))
+    wall = Wall(0.5, 0.0 if side > 0 else math.pi, friction=0.3)
+    p, w = plain(system_record(hold(block, wall), G)), plain(working_memory())
+    flat, _ = posed(p, [side * 0.2], [0.0])
+    w.q, w.drive[:], w.kind[:] = flat, -1, 1
+    foot = top = int(side > 0)
+    w.closed[0, foot] = w.closed[1, top] = 1
+    w.slides[:2] = 1
+    q = w.q[:3]
+    q[:2] += (side * (0.5 + 1e-4) - (q[:2] + turn(q[2]) @ p.edge[1, top])[0], 2e-4)
+    w.v[:3] = 0.01, -0.02, 0.03
+    impacts.project(p, w)
+    assert (q[:2] + turn(q[2]) @ p.corner[0, foot])[1] == pytest.approx(0.0, abs=1e-8)
+    assert (q[:2] + turn(q[2]) @ p.edge[1, top])[0] == pytest.approx(0.5 * side)
+
+
+SPRING = BilinearIsolator(
+    mass=20.0, stiffness=400.0, strength=50.0, yield_displacement=0.01
+)
+DISH = SlidingPendulum(mass=20.0, radius=1.5, friction=0.05)
+# what carries, which way its spring has yielded, and by how much for good [m]
+HELD_BY = {"elastic": (SPRING, 0, 0.002), "yields": (SPRING, 1, 0), "dish": (DISH, 0, 0)}
+
+
+@pytest.mark.parametrize("kind", HELD_BY)
+def test_a_plate_and_its_load_move_as_one_coordinate_and_its_books_close(kind):
+    """Equation 11 of ``docs/holding.md``, integrated by another method; what it carries stands still on it."""
+    isolator, yields, plastic = HELD_BY[kind]
+    block = as_system(Block(0.4, 0.5, 80.0))
+    p = plain(system_record(hold(block, support=isolator), G))
+    w = plain(working_memory())
+    w.q, w.drive[:], w.kind[:], w.closed[:2] = p.standing, -1, 1, 1
+    w.yields, w.plastic, w.slides[0] = yields, plastic, 1
+    u, v, mass = 0.01, 0.2, 100.0
+    w.q[[0, 3]] += u
+    w.v[[0, 3]] = v
+    solve.look_at(p, w, w.q)
+    h, rise = 0.01, (30.0, -20.0)
+    stretch = step.Stretch(h, RIGHT, UP, h * rise[0], h * rise[1])
+
+    def force(u: float) -> float:
+        """Of spring and dish, without friction and a rise of the ground [N]."""
+        held = 50.0 if yields else p.spring_rise * (u - plastic)
+        return p.spring_stiffness * u + held
+
+    def rates(t: float, y: np.ndarray) -> np.ndarray:
+        """Of displacement, speed, work of the ground, and what friction and springs have taken."""
+        u, v = y[:2]
+        ah, av = RIGHT + rise[0] * t, UP + rise[1] * t
+        rubs = p.kinetic[0] * mass * (G + av)
+        back = force(u) + mass * (G + av) * u / p.dish_radius
+        a = -ah - (rubs + back) / mass
+        return np.array([v, a, -mass * ah * v, rubs * v, back * v])
+
+    known = solve_ivp(rates, (0, h), [u, v, 0, 0, 0], rtol=1e-11, atol=1e-14).y[:, -1]
+    assert carried._fill_series(p, w, stretch)
+    felt = carried._acceleration(w, 1.0, h)
+    assert felt == pytest.approx(rates(h, known)[1], rel=1e-8)
+    w.rest[:] = (1.0, 0.0, 0.0)
+    assert carried.carry_along(p, w, stretch)
+    for first in (0, 3):
+        assert w.q[first] - p.standing[first] == pytest.approx(known[0], rel=1e-9)
+        assert w.v[first : first + 3] == pytest.approx((known[1], 0.0, 0.0), rel=1e-9)
+    assert carried.carried_energies(p, w, stretch) == pytest.approx(known[2:], rel=1e-7)
+
+
+def test_witnesses_see_the_same_in_impacts_and_in_what_no_contact_could_have_done():
+    """Impacts of random columns, some of them with a jump of one body that nothing has given."""
+    rng, told = np.random.default_rng(20), set()
+    for _ in range(20):
+        state = drawn(rng, True, 0)
+        p, w, n = state.p, state.w, state.count
+        w.touching[:n], w.old_v[:] = w.closed[:n], w.v
+        impacts.strike(p, w, 0.0, 0.0, 0.0)
+        # as small as what shuts slow ends may ask, and more
+        jump = rng.choice([0.0, 0.1 * witness.SHUT * 1e-6 * p.speed, 0.1])
+        w.v[rng.integers(3 * n)] += jump * rng.choice([-1, 1])
+        frictions = p.static[:n], p.kinetic[:n]
+        column = other_witness.Column(state.bodies, *frictions, p.size, p.speed)
+        seen = (rows(each, n) for each in (w.q, w.old_v, w.v))
+        laws = other_witness.violations(column, other_witness.Impact(*seen))
+        laws.pop("direction")
+        worst = max(laws.values()) / (witness.SHUT * 1e-6)
+        if not 0.3 < worst < 3:
+            broken = witness.breaks_a_law(p, w, 1e-6, True)
+            assert broken == (worst > 1), laws
+            told.add((n, bool(broken)))
+    assert len(told) >= 6
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_witness_takes_what_a_wall_gives_and_no_more(side):
+    """A block in flight whose upper corner is stopped by a wall, by the normal and the moment of one push."""
+    block = as_system(Block(0.4, 1.0, 80.0))
+    wall = Wall(0.5, 0.0 if side > 0 else math.pi, friction=0.3)
+    p = plain(system_record(hold(block, wall), G))
+    theta = 0.2 * side
+    for pulls, rubs, spins, lawful in (
+        (1, 0.0, 0.0, True),
+        (1, 0.29, 0.0, True),
+        (1, 0.31, 0.0, False),
+        (-1, 0.0, 0.0, False),
+        (1, 0.0, 0.5, False),
+    ):
+        w = plain(working_memory())
+        flat, _ = posed(p, [theta], [0.0])
+        w.q = flat
+        end = int(side > 0)
+        corner = turn(theta) @ p.edge[1, end]
+        w.q[:2] = side * 0.5 - corner[0], 1.0
+        push = 7.0 * pulls * np.array([-side, 0.0]) + 7.0 * rubs * np.array([0.0, side])
+        jump = push / 80.0
+        turned = (push[0] * corner[1] - push[1] * corner[0]) / p.inertia[0]
+        # the body turns about the corner, which rests, and the foot of its side comes closer
+        spin = -0.3 * side
+        w.v[:3] = -spin * corner[1], spin * corner[0], spin
+        w.old_v[:3] = w.v[:3] - (*jump, turned)
+        w.v[2] += spins * side
+        w.old_v[2] += spins * side
+        w.hit[1, end], w.hit_shear[1] = 7.0 * pulls, 7.0 * rubs
+        assert witness.breaks_a_law(p, w, 1e-6, True) != lawful
