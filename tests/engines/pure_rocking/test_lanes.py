@@ -4,6 +4,7 @@ Kernels are called one by one, as plain Python.
 """
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -26,8 +27,11 @@ from .plain_rocking import (
 )
 
 with plain_library():
+    from rockfrag.engines.pure_rocking.ensembles import _extremes
     from rockfrag.engines.pure_rocking.kernels.lanes import (
         block,
+        series,
+        stack_case,
         stack_constants,
         stack_one,
         stack_two,
@@ -64,6 +68,12 @@ def test_what_turns_alone_holds_the_other_contact_as_the_plain_model_says():
             rate = omega[1] if shut == 0 else omega[0]
             found = stack_one.least_hold(at, turn, rate * H, (ground, weight), G)
             assert found == pytest.approx(expected, rel=1e-6, abs=1e-9 * unit * H**2)
+            # what has just landed is settled if that holds it
+            case = SimpleNamespace(c1=c[0], c2=c[1], slot=0, omega2=rate * H)
+            case.ground, case.weight = ground, weight
+            holds = stack_one.least_hold(at, 0.0, rate * H, (ground, weight), G) > 0
+            worker = SimpleNamespace(ones=one.reshape(1, 9))
+            assert stack_case._is_settled(case, worker, G) == holds
             # how near balance: of the critical angle, and of its speed
             critical, vx, vy, inertia = eq.balance(body, *c)
             frequency = math.sqrt(G * math.hypot(vx, vy) / inertia)
@@ -301,3 +311,134 @@ def test_rest_ends_where_the_ground_leaves_what_the_weight_can_hold(factor, upwa
         else:
             seen.add("at once")
     assert {"stays", "leaves"} <= seen
+
+
+def test_contact_events_are_counted_by_sample():
+    case, counts = SimpleNamespace(counted_sample=-1, contact_events=9), []
+    for case.k in (3, 3, 4, 7, 7, 7):
+        stack_case._count_contact_event(case)
+        counts.append(case.contact_events)
+    assert counts == [1, 2, 1, 1, 2, 3]
+
+
+def test_what_comes_into_a_lane_is_what_comes_out_of_it():
+    """A case in which one contact is open, with the peaks of both bodies so far."""
+    still = SimpleNamespace(samples=np.zeros(9), vertical=np.zeros(0))
+    for rng, body, _ in stacks(26, 2):
+        ones = constants_of(body)[0].reshape(1, 9)
+        for c in [c for c in STATES if 0 in c]:
+            case = plain(np.zeros(1, stack_case.CASE)[0])
+            case.c1, case.c2, case.last = *c, 8
+            case.theta2, case.omega2 = rng.normal(size=2)
+            case.peak1, case.peak2, case.fast, case.near = rng.uniform(size=4)
+            before = case.copy()
+            lane = plain(np.zeros(1, stack_one.LANE)[0])
+            stack_case.place_one(1, case, SimpleNamespace(one=lane, ones=ones), still)
+            stack_case.store_one(1, case, lane)
+            for name in "theta2 omega2 peak1 peak2 fast near".split():
+                assert case[name] == before[name]
+            assert case.theta1 == (case.theta2 if c[1] == 0 else 0.0)
+
+
+def test_a_lone_block_falls_for_certain_only_as_it_opens():
+    """Its energy of motion is beyond the barrier; one that comes back rocks over to the other side."""
+    lane = plain(np.zeros(1, block.LANE)[0])
+    lane.barrier[1], lane.heavy[1], lane.bound[1] = 1.1, 1.0, 0.1
+    lane.kappa[1] = 0.01
+    turn = math.sin(0.2), math.cos(0.2)
+    needed = math.sqrt(2 * 0.01 * (1.1 - turn[1] + 0.1 * turn[0]))
+    for omega, falls in (
+        (-1.01 * needed, True),
+        (-0.99 * needed, False),
+        (1.01 * needed, False),
+    ):
+        assert block._is_certain(lane, 1, turn, omega, 0.5 * omega) == falls
+
+
+def lane_of(gap):
+    """A lane of a block over a step in which ψ less its critical angle is this polynomial."""
+    lane = plain(np.zeros(1, block.LANE)[0])
+    rates = np.zeros(7)
+    rates[: gap.degree()] = gap.deriv().coef
+    lane.angle[0], lane.kappa[0], lane.was_left[0] = 0.3, 0.01, 1.0
+    lane.was_psi[0], lane.was_omega[0] = 0.3 + gap(0.0), rates[0]
+    lane.psi[0], lane.omega[0] = 0.3 + gap(1.0), gap.deriv()(1.0)
+    lane.rates[:, 0] = rates[1:]
+    tally = SimpleNamespace(peak2=0.0, fast=0.0, unstable_distance=1.0)
+    return lane, tally
+
+
+def test_a_block_that_falls_back_and_is_thrown_open_within_a_step_lands_in_between():
+    x = Polynomial([0.0, 1.0])
+    gap = -0.001 - 0.002 * x + 0.06 * (x * (1 - x)) ** 2
+    lane, tally = lane_of(gap)
+    t, psi, _, stays = block._contact_event(lane, 0, tally)
+    assert t == pytest.approx(brentq(gap, 0.0, 0.4), abs=1e-9)
+    assert psi == 0.3 and not stays
+
+
+def test_a_peak_is_noted_where_a_block_turns_back_and_at_the_end_where_it_does_not():
+    x = Polynomial([0.0, 1.0])
+    turns, opens = -0.05 - 0.02 * x + 0.03 * x**2, -0.05 - 0.03 * x + 0.005 * x**2
+    for gap in (turns, opens):
+        lane, tally = lane_of(gap)
+        block._contact_event(lane, 0, tally)
+        least = gap(np.linspace(0, 1, 3001)).min()
+        assert tally.peak2 == pytest.approx(-least / 0.3, rel=1e-6)
+
+
+def test_what_is_ahead_of_a_block_of_samples_is_of_its_own_motion():
+    rng, sizes = np.random.default_rng(27), (3, 1, 2)
+    offsets = cases.BLOCK * np.concatenate([[0], np.cumsum(sizes)])
+    samples = rng.normal(size=offsets[-1])
+    found = _extremes(samples, offsets)
+    for n in range(sum(sizes)):
+        own = slice(n * cases.BLOCK, (n + 1) * cases.BLOCK)
+        end = offsets[np.searchsorted(offsets, n * cases.BLOCK, side="right")]
+        ahead = samples[n * cases.BLOCK : end]
+        expected = samples[own].max(), samples[own].min(), ahead.max(), ahead.min()
+        assert [each[n] for each in found] == list(expected)
+
+
+@pytest.mark.parametrize("upward", [False, True])
+def test_the_series_of_a_lone_block_is_that_of_its_equation(upward):
+    """ψ'' = κ (W sin ψ + A cos ψ), coefficient by coefficient, by products of series."""
+    rng = np.random.default_rng(28)
+    for _ in range(5):
+        psi, w, kappa = rng.uniform(0.1, 0.5), rng.normal(), rng.uniform(0.5, 1)
+        ground = Polynomial(rng.normal(size=2))
+        weight = Polynomial([rng.uniform(0.5, 1.5), 0.4] if upward else [1.0])
+        angle = np.zeros(8)
+        angle[:2] = psi, w
+        sine, cosine = np.zeros(8), np.zeros(8)
+        sine[0], cosine[0] = math.sin(psi), math.cos(psi)
+        for n in range(6):
+            torque = weight * Polynomial(sine) + ground * Polynomial(cosine)
+            angle[n + 2] = kappa * torque.coef[n] / ((n + 1) * (n + 2))
+            rate = Polynomial(angle).deriv()
+            sine[n + 1] = (rate * Polynomial(cosine)).coef[n] / (n + 1)
+            cosine[n + 1] = -(rate * Polynomial(sine)).coef[n] / (n + 1)
+        lift = (weight.coef[0], 0.4 * upward, upward)
+        found = series.rates_of_one(
+            (math.sin(psi), math.cos(psi)), w, kappa, tuple(ground.coef), lift
+        )
+        assert found == pytest.approx(Polynomial(angle).deriv().coef)
+
+
+def test_hops_of_a_lone_block_end_where_the_ground_stays_still_for_as_long():
+    """T = 2 w (1/D + e/D') / (1 - e²), on a ground that is still and then opens it."""
+    pivot = SimpleNamespace(sine=0.3, cosine=0.95, swing=0.01, restitution=0.8)
+    drop = pivot.swing * pivot.sine
+    for quiet in (4, 12):
+        samples = np.zeros(64)
+        samples[quiet:] = 50.0
+        ahead = chatter.Ahead(samples, np.zeros(0), 1.0, 63, 0, 0.0, 1.0)
+        for part, ends in ((0.9, True), (1.2, False)):
+            speed = part * (quiet - 1) * drop * (1 - 0.64) / (2 * 1.8)
+            for side in (1, -1):
+                found = chatter.block_dies_out(speed, side, pivot, pivot, ahead)
+                assert found == ends
+        # on a still ground not from flights that are too high to be left out
+        still = ahead._replace(samples=np.zeros(64))
+        high = 0.2 * drop / math.sqrt(pivot.swing)
+        assert not chatter.block_dies_out(1.01 * high, 1, pivot, pivot, still)
