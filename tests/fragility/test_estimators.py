@@ -105,6 +105,8 @@ def test_step_protocols_recover_the_parameters_also_when_a_third_is_censored(lim
     tests = step_tests(capacities(800, 4), 0.10, limit)
     result = fit_step_tests(tests)
     within(result.fit)
+    # nothing is to be warned of
+    assert result.fit.warnings == ()
     assert (result.fit.n_overturned < 600) == (limit == 0.4)
     assert result.interval.theta[0] < THETA < result.interval.theta[1]
 

@@ -1,5 +1,6 @@
 """Whether a curve describes its data, who moves it, and which intensity measure tells most."""
 
+import math
 import re
 
 import numpy as np
@@ -9,7 +10,7 @@ from scipy import stats
 
 from rockfrag.base.errors import InputError
 from rockfrag.fragility.checks import goodness_of_fit
-from rockfrag.fragility.curve_facts import compared_curves
+from rockfrag.fragility.curve_facts import compared_curves, curve_facts
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.held_out import outcome_scores
@@ -70,6 +71,16 @@ def test_a_wrong_shape_fails():
     judged = goodness_of_fit(wrong, fit_lognormal(wrong), replicates=200)
     assert judged.p_value < 0.01
     assert "is rejected" in judged.words
+    assert fragility_of(wrong).checks.rejected
+
+
+def test_the_score_of_brier_is_the_mean_square_of_what_was_missed():
+    outcomes = cloud(300, 4, lognormal)
+    fit = fit_lognormal(outcomes)
+    judged = goodness_of_fit(outcomes, fit, replicates=10)
+    told = stats.norm.cdf(np.log(outcomes.im / fit.theta) / fit.beta)
+    missed = np.mean((outcomes.overturned - told) ** 2)
+    assert judged.brier == pytest.approx(missed, rel=1e-9)
 
 
 def test_p_values_of_true_curves_are_uniform():
@@ -82,7 +93,7 @@ def test_p_values_of_true_curves_are_uniform():
 
 def test_the_calibration_curve_lies_on_the_diagonal_for_a_true_curve():
     checks = fragility_of(cloud(5000, 2, lognormal)).checks
-    assert checks.p_fit == checks.goodness.p_value > 0.05
+    assert checks.p_fit == checks.goodness.p_value > 0.05 and not checks.rejected
     table = checks.goodness.calibration
     apart = (table.observed - table.predicted).to_numpy()
     assert np.abs(apart).max() == abs(checks.largest_residual) < 0.06
@@ -203,6 +214,14 @@ def test_shares_of_motions_that_mostly_overturn_nothing_have_no_numbers_that_are
     first = reading(table, "mean_probability")
     assert first["p_fit"] < 0.05
     assert said in first["warnings"] and "nan" not in first["warnings"]
+
+
+def test_facts_of_a_row_are_those_that_it_knows():
+    """Without β nothing is said of its parts, nor where it holds all of them."""
+    row = {"n_motions": 6, "beta": 0.4, "beta_statistical": 0.1}
+    assert "Beta of the motions 0.400" in curve_facts(row)
+    for unknown in ({"beta": math.nan}, {"beta_holds_all": True}):
+        assert curve_facts(row | unknown) == "6 motions."
 
 
 def test_motion_that_moves_the_median_most_is_named():

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.base.errors import InputError
-from rockfrag.fragility.tests_file import _outcomes, read_tests
+from rockfrag.fragility.tests_file import _outcomes, read_tests, read_titles
 from rockfrag.fragility.user_table import fit_user_table
 
 from ..case_tables import case_tables
@@ -34,6 +34,14 @@ def test_same_table_in_every_form(tmp_path, form):
     assert table["motion"].tolist() == ["r1", "r2", "r3"]
     assert table["pga_g"].tolist() == [0.35, 0.5, 0.25]
     assert table["overturned"].tolist() == [0, 1, 0]
+
+
+def test_comments_above_the_header_are_no_rows(tmp_path):
+    path = write(tmp_path / "t.csv")
+    path.write_text("# tests of 2019\n# in the hall, by hand\n" + path.read_text())
+    assert read_titles(path) == ["record", "pga_g", "overturned"]
+    table = read_tests(path, ["pga_g"], motion="record")
+    assert table["pga_g"].tolist() == [0.35, 0.5, 0.25]
 
 
 @pytest.mark.parametrize(("yes", "no"), [("sì", "no"), ("VRAI", "FAUX")])

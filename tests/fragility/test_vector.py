@@ -87,6 +87,17 @@ def test_one_earthquake_gives_no_limits_and_says_so():
     assert any("one earthquake" in note for note in fit.warnings)
 
 
+def test_of_two_earthquakes_each_is_left_out_once():
+    table = laboratory(np.random.default_rng(7), 2, motions=20)
+    fit = fit_vector(table, MEASURES)
+    assert len(fit.replicates) == 2
+    for name, left in zip(("0", "1"), fit.replicates, strict=True):
+        other = table[table["earthquake"] != name]
+        x = sm.add_constant(np.log(other[list(MEASURES)].to_numpy()))
+        alone = sm.Probit(other["overturned"].to_numpy(), x).fit(disp=0)
+        assert left == pytest.approx(alone.params, rel=1e-3)
+
+
 def test_separation_by_a_plane_is_found_and_said():
     table = laboratory(np.random.default_rng(6), 4)
     index = np.log(table[MEASURES[0]]) + np.log(table[MEASURES[1]])
