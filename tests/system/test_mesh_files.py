@@ -84,6 +84,14 @@ def test_a_box_in_gltf_has_its_volume(tmp_path: Path):
     assert shape.volume == pytest.approx(0.24, rel=1e-6)
 
 
+def test_a_sheet_with_two_sides_encloses_nothing(tmp_path: Path):
+    """Its surface is closed, and its volume is exactly zero."""
+    path = tmp_path / "sheet.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 2\n")
+    with pytest.raises(InputError, match="encloses no volume"):
+        read_shape(path, mass=1.0)
+
+
 def test_a_buffer_is_read_from_the_folder_of_the_mesh_and_belongs_to_its_files(
     tmp_path: Path,
 ):

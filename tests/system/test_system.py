@@ -9,12 +9,19 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rockfrag import Block, Stack, simulate
+from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY as G
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Column
-from rockfrag.system.body import Circle, Interval, Polygon, RigidBody
-from rockfrag.system.contact import Friction, checked_friction
-from rockfrag.system.system import each_contact, uplift_ratios
+from rockfrag.system.body import (
+    Circle,
+    Interval,
+    Polygon,
+    RigidBody,
+    checked_tensor,
+)
+from rockfrag.system.contact import Contact, Friction, checked_friction
+from rockfrag.system.system import System, each_contact, uplift_ratios
 
 from ..oracle.standing import upper_on_contact
 from ..simulation.reference_bodies import T2, P
@@ -41,6 +48,20 @@ def test_a_statue_that_reaches_beyond_its_pedestal_rocks_on_the_overlap_in_a_col
     lower, upper = three.system().carried[1], upper_on_contact(stack).shape
     assert lower.b == pytest.approx(upper.b, rel=1e-15)
     assert lower.x == pytest.approx(upper.x, rel=1e-12)
+
+
+def test_a_body_rocks_on_its_base_however_narrow_its_face_is():
+    """A bust on a foot whose top is narrower and aside."""
+    base, face = Interval(-0.3, 0.5), Interval(0.1, 0.2)
+    body = RigidBody(50.0, 4.0, (0.15, 0.0, 0.4), base, 1.0, face)
+    (shape,) = System((body,), (Contact(),)).shapes
+    assert (shape.b, shape.x, shape.y) == pytest.approx((0.4, 0.05, 0.4))
+
+
+@pytest.mark.parametrize("value", [np.eye(2), np.diag([1.0, 1.0, np.nan])])
+def test_a_tensor_of_inertia_has_nine_numbers(value):
+    with pytest.raises(InputError, match="or a tensor of shape"):
+        checked_tensor(value)
 
 
 def test_boxes_and_cylinders_in_space_are_seen_as_planar_blocks():

@@ -337,8 +337,11 @@ def _closed_mesh(path: Path, hull: bool) -> Any:
             f"{path}: the surface is not closed ({int((count % 2).sum())} edges do not belong to two triangles), "
             "so it has no volume; close its holes, or take its convex hull (hull=True)."
         )
-    if mesh.volume < 0:
-        mesh.invert()
-    if not mesh.volume > 0:
+    # what encloses nothing has no centre, which the same call looks for
+    with np.errstate(invalid="ignore", divide="ignore"):
+        volume = mesh.volume
+    if not abs(volume) > 0:
         raise InputError(f"{path}: the surface encloses no volume.")
+    if volume < 0:
+        mesh.invert()
     return mesh

@@ -88,7 +88,8 @@ def beside_routh(number: int, seed: int) -> Counter:
 
 
 @pytest.mark.parametrize(
-    ("number", "seed"), [(40, 3), (400, 1), pytest.param(20_000, 2, marks=pytest.mark.slow)]
+    ("number", "seed"),
+    [(40, 3), (400, 1), pytest.param(20_000, 2, marks=pytest.mark.slow)],
 )
 def test_impacts_of_one_contact_are_those_of_routh(number: int, seed: int) -> None:
     counts = beside_routh(number, seed)

@@ -1129,7 +1129,11 @@ SPRING = BilinearIsolator(
 )
 DISH = SlidingPendulum(mass=20.0, radius=1.5, friction=0.05)
 # what carries, which way its spring has yielded, and by how much for good [m]
-HELD_BY = {"elastic": (SPRING, 0, 0.002), "yields": (SPRING, 1, 0), "dish": (DISH, 0, 0)}
+HELD_BY = {
+    "elastic": (SPRING, 0, 0.002),
+    "yields": (SPRING, 1, 0),
+    "dish": (DISH, 0, 0),
+}
 
 
 @pytest.mark.parametrize("kind", HELD_BY)

@@ -335,7 +335,7 @@ def test_what_comes_into_a_lane_is_what_comes_out_of_it():
             lane = plain(np.zeros(1, stack_one.LANE)[0])
             stack_case.place_one(1, case, SimpleNamespace(one=lane, ones=ones), still)
             stack_case.store_one(1, case, lane)
-            for name in "theta2 omega2 peak1 peak2 fast near".split():
+            for name in ("theta2", "omega2", "peak1", "peak2", "fast", "near"):
                 assert case[name] == before[name]
             assert case.theta1 == (case.theta2 if c[1] == 0 else 0.0)
 
