@@ -824,6 +824,76 @@ def test_a_small_wobble_lies_down_and_what_it_loses_is_told():
     assert y[2] == body.height
 
 
+@pytest.mark.parametrize("way", [0.0, 2.0])
+def test_a_small_wobble_that_slides_lies_down_and_slides_on(way):
+    """Friction that cannot tip it: what tilts it goes, what carries it along stays, and brakes by µ g."""
+    body, s = drum(off=(0.0, 0.0)), case()
+    body.kinetic = body.static = 0.1
+    y = leaning(body, 1e-6, 0.4)
+    mode(s, body.count, slides=forces.SLIDES)
+    speed = 0.5 * np.array([math.cos(way), math.sin(way)])
+    s.direction[0] = speed / 0.5
+    y[7:9], y[9:12] = speed, (1e-6, 2e-6, 3e-6)
+    had = solid.energy(body, y, G)
+    lost = whole.small_rim(body, y, 0.0, 1e-3, s)
+    assert y[7:12] == pytest.approx((*speed, 0, 0, 0), abs=1e-9)
+    assert lost == pytest.approx(had - solid.energy(body, y, G)) and lost > 0
+    assert y[2] == body.height and modes.lies_flat(body, y, rotation(y))
+    assert s.jammed == 0 and s.rests == 0 and s.count > 0
+    assert s.slides[: s.count].tolist() == [forces.SLIDES] * s.count
+
+
+def test_a_wobble_that_is_given_up_lies_flat_and_what_it_had_is_told():
+    body, s = drum(off=(0.0, 0.0)), case()
+    y = leaning(body, 0.5 * whole.NEXT_TO_FLAT, 0.4)
+    y[9:13] = 1e-3, 2e-3, 3e-3, 0.0
+    mode(s, body.count)
+    had = solid.energy(body, y, G)
+    lost = whole.give_up(body, 0.0, y, s)
+    assert y[7:13] == pytest.approx(0, abs=1e-12)
+    assert modes.lies_flat(body, y, rotation(y))
+    assert lost == pytest.approx(had, rel=1e-9)
+    assert s.counters[modes.UNSOLVED] == 1 and s.rests == 1
+
+
+def box_at_wall(friction):
+    """A box that leans against a wall towards +x, its foot an edge on the ground; and its state."""
+    base = Polygon(((-0.2, -0.3), (0.2, -0.3), (0.2, 0.3), (-0.2, 0.3)))
+    tensor = np.diag([0.3, 0.3, 0.1])
+    made = RigidBody(1.0, tensor, (0.0, 0.0, 0.5), base, 1.0, base)
+    tilt = math.atan2(0.2, 0.5) + 0.1
+    c, s = math.cos(tilt), math.sin(tilt)
+    foot, top = np.array([[c, s], [-s, c]]) @ np.array([[0.2, 0.2], [-0.5, 0.5]])
+    # columns: the lower and the upper edge towards the wall
+    low, high = (foot[0], top[0]), (foot[1], top[1])
+    wall = Wall(high[0], 0.0, friction=friction)
+    body = kernel_body(System((made,), (Contact(),), constraints=(wall,)))
+    body["static"] = body["kinetic"] = 2.0
+    y = leaning(plain(body), tilt, 0.0)
+    y[2] = -low[1]
+    return plain(body), y, np.array(low), np.array(high)
+
+
+def test_a_box_that_leans_against_a_smooth_wall_is_held_by_the_moment_of_its_weight():
+    """N h = m g a about its foot, as much along the ground, and the whole weight under it."""
+    body, y, low, high = box_at_wall(0.0)
+    s, rows = case(), rotation(y)
+    n, _ = modes.pick_closed(body, y, rows, modes.AT_REST, s)
+    assert n == 4
+    found, _ = modes.solve_forces(body, y, rows, (0.0, 0.0, -G), n, modes.AT_REST, s)
+    assert found >= 0
+    at_wall, at_ground = np.zeros(3), np.zeros(3)
+    for k in range(n):
+        push = s.impulse[3 * k : 3 * k + 3]
+        if s.which[k] >= solid.WALLS:
+            at_wall += push
+        else:
+            at_ground += push
+    pressed = G * -low[0] / (high - low)[1]
+    assert at_wall[2] == pytest.approx(pressed, rel=1e-6)
+    assert at_ground == pytest.approx((pressed, 0.0, G), rel=1e-6, abs=1e-6)
+
+
 def test_a_face_that_tips_as_it_slides_keeps_its_velocities_and_gains_nothing():
     body, s = drum(), shaken(np.random.default_rng(28))
     for sliding in (forces.SLIDES, forces.STICKS):

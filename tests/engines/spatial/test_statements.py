@@ -330,6 +330,67 @@ def test_a_tie_pulls_from_its_knot_to_its_anchor_by_stretch_and_rate():
         assert margin == pytest.approx(min(stretch, stretch + 40.0 * rate / 5e3))
 
 
+@pytest.mark.parametrize("bracket", [False, True])
+def test_a_tie_is_beyond_its_other_state_exactly_where_it_bears_something(bracket):
+    """Its margin is positive where its force, by stretch and rate, is none."""
+    rng, told = np.random.default_rng(24), set()
+    tie = Tie(
+        (0.1, 0.0, 1.0),
+        (1.0, 0.2, 1.1),
+        500.0,
+        damping=8.0,
+        slack=0.02,
+        bracket=bracket,
+    )
+    body = uneven(rng, tie)
+    for _ in range(200):
+        length = body.natural[0] + rng.uniform(-0.1, 0.05)
+        rate = rng.normal(0, 3.0)
+        force = forces.tie_force(body, length, rate, 0)
+        assert (forces.tie_margin(body, length, rate, 0) > 0) == (force != 0)
+        told.add(int(np.sign(force)))
+    assert told == ({-1, 0, 1} if bracket else {0, 1})
+
+
+def test_contacts_that_may_be_are_those_of_the_ground_and_of_each_corner_with_each_wall():
+    rng, walls = np.random.default_rng(25), (Wall(2.0, 0.3), Wall(3.0, 2.0))
+    tensor = np.diag([0.2, 0.2, 0.1])
+    made = RigidBody(1.0, tensor, (0.0, 0.0, 0.4), Circle(0.2), 0.8)
+    drum = plain(kernel_body(System((made,), (Contact(),))))
+    for body, ground, there in (
+        (uneven(rng), [*range(6)], 0),
+        (uneven(rng, *walls), [*range(6)], 2),
+        (drum, [drum.count], 0),
+    ):
+        assert [*solid.candidates(body)] == ground
+        found = [solid.meeting(body, k) for k in range(solid.meetings(body))]
+        corners = [
+            solid.WALLS + wall * solid.MOST_CORNERS + corner
+            for wall in range(there)
+            for corner in range(body.corners)
+        ]
+        assert found == ground + corners
+
+
+def test_a_body_slides_if_any_of_its_contacts_does():
+    s = case()
+    for slides in ((), (0,), (1,), (0, 1), (1, 0), (0, 0, 1)):
+        mode(s, *range(len(slides)))
+        s.slides[: len(slides)] = slides
+        assert whole.slides_any(s) == any(slides)
+
+
+def test_what_holds_a_body_is_followed_as_long_as_it_moves():
+    """Energy of motion over that of overturning, of a body that something holds."""
+    rng = np.random.default_rng(26)
+    body, free = uneven(rng, Wall(2.0, 0.0)), uneven(rng)
+    y = np.zeros(solid.SIZE)
+    y[3], y[7] = 1.0, math.sqrt(2 * 1e-4 * body.barrier)
+    for cut, hardly in ((0.9e-4, False), (1.1e-4, True)):
+        assert whole.hardly_moves(body, y, cut) == hardly
+        assert not whole.hardly_moves(free, y, cut)
+
+
 def test_a_body_is_beyond_its_balance_where_its_centre_leaves_the_base():
     body = uneven(np.random.default_rng(15))
     corners = np.array(OUTLINE) - (0.03, -0.02)

@@ -271,6 +271,29 @@ def test_a_contact_that_slips_a_given_way_is_rubbed_against_it():
         assert after[2] == pytest.approx(0.0, abs=1e-9)
 
 
+def test_shears_are_shortened_to_what_friction_allows_and_none_is_left_under_a_pull():
+    s = case()
+    s.friction[:4], s.holds[:4], s.slid[:4] = 0.3, 0.5, (0, 1, 0, 0)
+    s.impulse[:12] = 0.6, -0.8, 0.01, 0.6, -0.8, 0.01, 0.6, -0.8, -0.5, 0.01, 0.0, 2.0
+    cones.shorten_to_cones(s, 4, 0b1111)
+    sizes = np.hypot(s.impulse[0:12:3], s.impulse[1:12:3])
+    assert sizes == pytest.approx([0.005, 0.003, 0.0, 0.01])
+    assert s.impulse[:2] == pytest.approx((0.003, -0.004))
+    assert s.impulse[2:12:3].tolist() == [0.01, 0.01, -0.5, 2.0]
+
+
+def test_where_two_sets_of_contacts_would_do_this_is_counted(monkeypatch):
+    rng = np.random.default_rng(17)
+    body = uneven(rng)
+    for solutions in (0, 1, 2):
+        s, y = case(), leaning(body, 0.3, 0.4)
+        y[2] += 0.1
+        solved = (-1 if solutions == 0 else 0, solutions)
+        monkeypatch.setattr(modes, "solve_forces", lambda *_, solved=solved: solved)
+        modes.choose_mode(body, 0.0, y, s)
+        assert s.counters[modes.AMBIGUOUS] == (solutions > 1)
+
+
 def test_a_rim_that_stops_at_its_lowest_point_stops_there():
     """By the least momentum, as a vertex at that place would."""
     across = (3 * 0.2**2 + 0.8**2) / 12
