@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from rockfrag.assess import read_hazard
-from rockfrag.assess.hazard.curve import PGA, PGV, curve_of_one_level, read_measure
+from rockfrag.assess.hazard.curve import (
+    PGA,
+    PGV,
+    curve_of_one_level,
+    make_curve,
+    rate_weights,
+    read_measure,
+)
 from rockfrag.base.errors import InputError
 from rockfrag.motions.intensity import intensity_measures
 
@@ -64,6 +71,17 @@ def test_one_level_passes_through_its_return_period():
         rates = [float(each.rate(0.25 * factor)) for each in (steep, curve, flat)]
         assert rates == sorted(rates, reverse=factor < 1)
         assert len(set(rates)) == 3
+
+
+def test_weights_of_levels_integrate_over_a_hazard_curve():
+    """Of a function that is linear in ln level, ∫ P dν of a power law in closed form; and of one, all its rate."""
+    k, levels = 2.5, np.array([0.1, 0.2, 0.3, 0.8])
+    curve = make_curve(PGA, [0.01, 10.0], [rate(0.01), rate(10.0)], "test")
+    weights = rate_weights(curve, levels)
+    assert weights.sum() == pytest.approx(rate(0.1))
+    # ∫ ln(x/x0) k ν dx/x = (ν0 - νn)/k up to the last level, with what lies above at its value
+    integral = (rate(0.1) - rate(0.8)) / k
+    assert weights @ np.log(levels / 0.1) == pytest.approx(integral)
 
 
 @pytest.mark.parametrize(("text", "words"), CASES["refused"])

@@ -170,14 +170,22 @@ def test_of_chosen_motions_the_velocity_is_that_of_all_among_which_they_were_cho
     motions: MotionSet,
 ):
     """Whichever are chosen, the earthquakes of the site are those of the whole set."""
-    all_ratios = motions.log_ratios(PGA)
-    relation = VelocityRelation.of(motions.about, all_ratios)
+    rng = np.random.default_rng(5)
+    known = [
+        {"magnitude": m, "distance_km": math.exp(d), "vs30_m_s": math.exp(v)}
+        for m, d, v in rng.uniform([6, 0, 5], [8, 4, 7], (40, 3)).tolist()
+    ]
+    library = tuple(
+        replace(motions.ground[i % 24], name=f"{i}", metadata=each | {"station": i})
+        for i, each in enumerate(known)
+    )
+    whole = replace(motions, ground=library, base=library, pairs=())
+    relation = VelocityRelation.of(whole.about, whole.log_ratios(PGA))
+    assert relation.middle
     of_floor = Site(Records(on_floor=True), asked(**SIZES).level, ())
     for kept in (slice(0, 8), slice(8, 24)):
-        ground, base = motions.ground[kept], motions.base[kept]
-        few = replace(
-            motions, ground=ground, base=base, pairs=(), library=motions.ground
-        )
+        chosen = library[kept]
+        few = replace(whole, ground=chosen, base=chosen, library=library)
         # it topples from a velocity on
         levels, ratios = np.geomspace(0.05, 5.0, 40), few.log_ratios(PGA)
         fell = levels * np.exp(ratios)[:, np.newaxis] >= 0.05

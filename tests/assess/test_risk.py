@@ -45,6 +45,7 @@ from rockfrag.assess.page import page_of, write_answer
 from rockfrag.assess.request import Records, make_request
 from rockfrag.assess.risk import (
     Evidence,
+    _weights_of_normal,
     after_uplift,
     amplitude_target,
     fraction_target,
@@ -150,6 +151,21 @@ def test_what_topples_no_motion_is_as_unlikely_as_it_is_far_away():
     # ln(0.7/0.5) is 1.7 standard deviations of the model away, ln(2/0.5) is 6.9
     assert found[1].value == pytest.approx(stats.norm.sf(1.7), rel=0.5)
     assert found[3].upper < 1e-4
+
+
+@pytest.mark.parametrize("spread", [0.1, 0.5])
+def test_weights_of_a_normal_value_give_the_mean_of_what_is_linear_between_points(
+    spread,
+):
+    """Beside an integral: all points, a straight line, and a bend."""
+    x = np.array([-0.9, -0.4, -0.1, 0.3, 1.2])
+    weights = _weights_of_normal(x, spread)
+    assert weights.sum() == pytest.approx(1.0)
+    z, step = np.linspace(-8, 8, 160_001, retstep=True)
+    density = stats.norm.pdf(z) * step
+    for values in (x, np.abs(x), np.eye(5)[1]):
+        mean = (np.interp(spread * z, x, values) * density).sum()
+        assert weights @ values == pytest.approx(mean, abs=1e-6)
 
 
 def test_one_earthquake_that_topples_leaves_more_open_than_none():
