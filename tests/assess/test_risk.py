@@ -17,6 +17,7 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.conversion import (
     OF_THE_SITE,
     PRIOR,
+    TOGETHER,
     UNKNOWN,
     Conversion,
     PublishedVelocity,
@@ -451,6 +452,11 @@ def test_an_object_that_velocity_topples_has_the_rate_of_that_velocity():
     assert rate_of(outcomes) > 1.5 * rate
     for side in conversion_of(logs, known).sides(outcomes):
         assert rate_of(side) == pytest.approx(rate, rel=0.06)
+
+
+def test_sides_of_the_spread_of_velocities_are_those_that_are_documented():
+    said = (ROOT / "docs" / "assess.md").read_text(encoding="utf-8")
+    assert f"± {100 * TOGETHER:g} % of the spread of ln PGV at a given level" in said
 
 
 def test_velocity_says_nothing_of_an_object_that_acceleration_topples():
