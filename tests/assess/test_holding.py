@@ -194,6 +194,9 @@ def test_what_is_known_of_a_holder_is_taken_as_it_is():
     bracket = holder(bracket="300 N", bracket_slack="2 mm")
     (tie,) = bracket.on(as_system(Block(0.4, 1.2, 100.0))).constraints
     assert (tie.bracket, tie.slack, tie.strength) == (True, 0.002, 300.0)
+    # as tight as it was fastened, if nothing is said of it
+    for held in (holder(bracket="300 N"), holder(cord="300 N")):
+        assert held.slack == 0.0
     # an object has one isolator
     tries = [type(each) for each in holders_beside([made])]
     assert Pendulum not in tries and Springs not in tries

@@ -9,6 +9,10 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Stack, overturns, simulate
+from rockfrag.engines.contract import Case, Request
+from rockfrag.engines.pure_rocking.histories import SingleRun
+from rockfrag.simulation.inputs import ground_motion
+from rockfrag.system import as_system
 
 from ...oracle.rocking_integrator import simulate_reference
 from ..planar.cases import G
@@ -114,11 +118,30 @@ def test_one_analysis_is_that_of_the_plain_integrator(piles, scale, upward):
     )
     known = exact(1, piles, scale, upward)
     assert found.overturned or not known.overturned
+    assert found.time == pytest.approx(DT * np.arange(len(found.theta)))
     theta = known.theta[::TIMES]
     n = min(len(theta), len(found.theta))
     upright = np.abs(theta[:n]).max(axis=1) < 0.5
     assert np.abs(theta).max() > 0.01
     assert found.theta[:n][upright] == pytest.approx(theta[:n][upright], abs=1e-6)
+
+
+def test_contacts_change_under_the_ground_and_the_gravity_of_that_instant():
+    """Both are linear between samples."""
+    level, lift = motions()
+    ground = ground_motion(4.0 * level, DT, 4.0 * lift)
+    case = Case(as_system(LONE[1][0]), ground, request=Request(g=G))
+    events = SingleRun(case).contact_events
+    time = np.arange(level.size) * DT
+    events = events[events["time"] < time[-1]]
+    assert len(events) > 1
+    for at in ("before", "after"):
+        assert events[at]["ground"] == pytest.approx(
+            np.interp(events["time"], time, 4.0 * level), abs=1e-9
+        )
+        assert events[at]["gravity"] == pytest.approx(
+            G + np.interp(events["time"], time, 4.0 * lift), abs=1e-9
+        )
 
 
 @pytest.mark.parametrize(
