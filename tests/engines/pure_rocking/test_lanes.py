@@ -442,3 +442,28 @@ def test_hops_of_a_lone_block_end_where_the_ground_stays_still_for_as_long():
         still = ahead._replace(samples=np.zeros(64))
         high = 0.2 * drop / math.sqrt(pivot.swing)
         assert not chatter.block_dies_out(1.01 * high, 1, pivot, pivot, still)
+
+
+@pytest.mark.parametrize(("left", "part"), [(1.0, 1.0), (0.6, 0.25)])
+def test_two_rotations_come_to_a_contact_event_with_ground_and_weight_of_that_instant(
+    left, part
+):
+    """Both contacts close at once; ground and weight are linear in the sample."""
+    lane = plain(np.zeros(1, stack_two.LANE)[0])
+    lane.was_left[0], lane.part[0], lane.when[0] = left, part, 0.3
+    lane.closes1[0] = lane.closes2[0] = 1
+    ground, weight = Polynomial([2.0, -3.0]), Polynomial([0.8, 0.4])
+    begins = 1.0 - left
+    lane.was_ground[0], lane.ground_end[0] = ground(begins), ground(1.0)
+    lane.was_weight[0], lane.weight_end[0] = weight(begins), weight(1.0)
+    series = plain(np.zeros(1, taylor.SERIES)[0])
+    worker = SimpleNamespace(two=lane, series=[series])
+    case = plain(np.zeros(1, stack_case.CASE)[0])
+    bodies = [SimpleNamespace(measured=1)]
+    ensemble, none = SimpleNamespace(bodies=bodies), None
+    found = stack_case.contact_event_of_two(0, case, worker, ensemble, none, G)
+    assert found == (True, True)
+    at = begins + 0.3 * part
+    assert (case.tau, case.ground, case.weight) == pytest.approx(
+        (at, ground(at), weight(at))
+    )
