@@ -160,6 +160,11 @@ def test_a_spectral_acceleration_beside_pga_narrows_the_velocity(motions: Motion
     # the line goes through the means
     mean = motions.log_over(SA_1S, PGA).mean()
     assert found.mean(math.exp(mean)) == pytest.approx(motions.log_ratios(PGA).mean())
+    # of one motion alone its own ratio is all that is known
+    alone = motions.ground[:1]
+    one = replace(motions, ground=alone, base=alone, pairs=())
+    found = VelocityBySpectrum.of(one, PGA)
+    assert (found.mean(0.3), found.scatter) == (one.log_ratios(PGA)[0], 0.0)
     level = asked(**SIZES, sa=["1 s", "0.2 g"]).level
     assert (level.measure, level.value, level.sa_1s) == (PGA, 0.3, 0.2)
     with pytest.raises(InputError, match="period of 1 s"):
