@@ -8,7 +8,7 @@ import pytest
 from rockfrag.assess import motions as motions_of
 from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import MotionSet, motion_set
-from rockfrag.assess.outcomes import find_directions
+from rockfrag.assess.outcomes import find_directions, make_intensity_levels
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
 from rockfrag.assess.rules import RULES, check_rules
@@ -73,6 +73,23 @@ def test_records_turned_round_come_from_the_same_directions(few: MotionSet):
             for each in (two, replace(two, base=tuple(turned_round)))
         )
         assert found == other and 0 < found.fraction < 1
+
+
+def test_what_is_round_falls_in_the_worst_direction_of_a_record(few: MotionSet):
+    """Fixed to its pedestal it rocks in a plane, any; both components of a record have what becomes of it."""
+    pedestal = {"width": "36 cm", "height": "90 cm", "mass": "100 kg"}
+    objects = asked(**STATUE, round=True, pedestal=pedestal).objects
+    levels = make_intensity_levels(few.with_both_components(), PGA, count=6)
+    bodies = {"fixed": objects.body.rigidly_joined()}
+    found, one_way = (
+        levels.outcomes_of_each([each], [bodies])[0]["fixed"]
+        for each in (objects, objects.in_plane())
+    )
+    for pair in few.pairs:
+        first, second = found.overturned[list(pair)]
+        assert (first == second).all()
+    assert (found.overturned >= one_way.overturned).all()
+    assert found.overturned.sum() > one_way.overturned.sum()
 
 
 def test_a_rule_takes_the_weaker_of_a_statue_and_of_what_it_is_fixed_to(few: MotionSet):
