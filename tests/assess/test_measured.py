@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rockfrag.assess.assumed import assume
 from rockfrag.assess.conversion import (
     OF_THE_SITE,
     PRIOR,
@@ -75,6 +76,12 @@ def test_free_rocking_says_the_inertia():
     assert asked(**SIZES, frequency_parameter=p).objects.block.centroidal_inertia == (
         pytest.approx(usual.centroidal_inertia)
     )
+
+
+def test_impacts_are_assumed_to_conserve_momentum_unless_they_were_measured():
+    assumed = assume("restitution", "restitution")
+    assert assumed in asked(**SIZES).objects.under.assumed
+    assert assumed not in asked(**SIZES, restitution=0.9).objects.under.assumed
 
 
 def test_the_velocity_is_that_of_the_prior_unless_something_is_said():
