@@ -23,6 +23,7 @@ from rockfrag.fragility.measure_selection import (
     recommend_measure,
 )
 from rockfrag.fragility.observations import observations_from_table
+from rockfrag.fragility.recommendation import CANNOT_COMPARE
 from rockfrag.fragility.vector import fit_vector
 
 from .made import ida_of, reading
@@ -64,6 +65,7 @@ def test_a_measure_that_cannot_be_scored_is_never_the_best():
     assert second.p_worse < 0.01
     assert np.isnan(third.score)
     assert third.chosen_fraction == 0
+    assert found.words != CANNOT_COMPARE
 
 
 def test_a_wrong_shape_fails():

@@ -130,6 +130,11 @@ def test_the_surface_states_its_error():
         assert 0.02 < surface.earthquakes < 0.1
 
 
+@pytest.mark.parametrize("standing", STANDINGS)
+def test_where_nothing_is_said_it_is_the_velocity_that_topples(standing):
+    assert surface_of(standing) is surface_of(standing, 1.0, "pgv_m_s")
+
+
 def test_an_unknown_limit_is_refused_with_those_that_are():
     with pytest.raises(InputError, match=r"0\.01, 0\.05"):
         toppling_velocity(0.3, 1.0, limit=0.33)

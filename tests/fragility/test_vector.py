@@ -87,6 +87,14 @@ def test_one_earthquake_gives_no_limits_and_says_so():
     assert any("one earthquake" in note for note in fit.warnings)
 
 
+@pytest.mark.parametrize(("earthquakes", "doubted"), [(3, True), (4, False)])
+def test_limits_are_doubted_from_fewer_earthquakes_than_were_validated(
+    earthquakes, doubted
+):
+    fit = fit_vector(laboratory(np.random.default_rng(8), earthquakes, 12), MEASURES)
+    assert any("were not validated" in note for note in fit.warnings) == doubted
+
+
 def test_of_two_earthquakes_each_is_left_out_once():
     table = laboratory(np.random.default_rng(7), 2, motions=20)
     fit = fit_vector(table, MEASURES)
