@@ -84,6 +84,20 @@ def test_a_box_in_gltf_has_its_volume(tmp_path: Path):
     assert shape.volume == pytest.approx(0.24, rel=1e-6)
 
 
+def test_a_mesh_weighs_what_is_stated_or_what_its_density_gives(tmp_path: Path):
+    path = tmp_path / "box.stl"
+    BOX.export(path)
+    for stated in ({"mass": 480.0}, {"density": 2000.0}):
+        assert read_shape(path, **stated).mass == pytest.approx(480.0)
+
+
+def test_a_cloud_of_points_is_called_one(tmp_path: Path):
+    path = tmp_path / "cloud.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n")
+    with pytest.raises(InputError, match="cloud of 4 points without triangles"):
+        read_shape(path, mass=1.0)
+
+
 def test_a_sheet_with_two_sides_encloses_nothing(tmp_path: Path):
     """Its surface is closed, and its volume is exactly zero."""
     path = tmp_path / "sheet.obj"

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rockfrag import Block, Stack, simulate
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY as G
-from rockfrag.system import geometry
+from rockfrag.system import Tie, geometry, hold
 from rockfrag.system.blocks import Column
 from rockfrag.system.body import (
     Circle,
@@ -48,6 +48,13 @@ def test_a_statue_that_reaches_beyond_its_pedestal_rocks_on_the_overlap_in_a_col
     lower, upper = three.system().carried[1], upper_on_contact(stack).shape
     assert lower.b == pytest.approx(upper.b, rel=1e-15)
     assert lower.x == pytest.approx(upper.x, rel=1e-12)
+
+
+def test_a_tie_holds_the_uppermost_body_if_nothing_is_said_of_it():
+    stack = Stack(Block(0.6, 0.4, 300.0), Block(0.3, 1.0, 100.0))
+    tie = Tie((0.0, 0.0, 1.0), (1.0, 0.0, 1.4), 1e4)
+    (held,) = hold(stack.system(), tie).constraints
+    assert stack.system().bodies[held.body].mass == 100.0
 
 
 def test_a_body_rocks_on_its_base_however_narrow_its_face_is():
