@@ -381,7 +381,8 @@ def _try_neighbours(p, w, trial, exclude):
     Returned is its place in the list, or ``FAILS``.
     """
     at = 0
-    while at < w.count:
+    # a full list takes no more
+    while at < w.count and w.count < w.wrong.size:
         for k in range(p.contacts):
             for what in range(CHANGES):
                 _take_tried(p, w, at)
