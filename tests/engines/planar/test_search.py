@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from rockfrag.engines.compile.jit import entry_kernel
+from rockfrag.engines.planar.impact import VANISHING
 from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory
 from rockfrag.engines.planar.search import (
     CONSISTENT,
@@ -24,7 +25,10 @@ from rockfrag.engines.planar.solve import (
     solve_generally,
     solve_motion,
 )
+from rockfrag.engines.planar.support import GUIDED
+from rockfrag.engines.planar.walls import wall_end
 from rockfrag.simulation.options import system_of
+from rockfrag.system import BilinearIsolator, Wall, hold
 
 from .cases import G, random_block, random_column, random_stack, with_contacts
 
@@ -130,6 +134,69 @@ def modes_of(touching: np.ndarray, moves: np.ndarray, impact: bool) -> np.ndarra
         own = [(0, 0), *itertools.product(closed, ways)]
         choices.append([(code + 4 * (way + 1)) << (4 * k) for code, way in own])
     return np.array(sorted(map(sum, itertools.product(*choices)), key=closed_ends))
+
+
+def stopped_at_its_foot(rng: np.random.Generator, bodies: int, kind: str, mus):
+    """Flat column whose foot meets a wall, or whose plate meets its stop, at 1 m/s.
+
+    As ``kind`` is "jam" its plate has been stopped, and the column sinks on it as where no mode is consistent.
+    """
+    system = with_contacts(random_column(rng, bodies), mus)
+    if kind == "wall":
+        column = [body.width / 2 + abs(body.ends[0].middle) for body in system.bodies]
+        wall = Wall(max(column) + 0.05, 0.0, friction=rng.uniform(0.0, 0.6))
+        system = hold(system, wall)
+    else:
+        plate = BilinearIsolator(mass=100.0, stiffness=100.0, strength=2.0, stroke=0.2)
+        system = hold(system, support=plate)
+    p, w = system_record(system, G), working_memory()
+    count, contacts = int(p["count"]), int(p["contacts"])
+    w["q"], _ = posed(p, [0.0] * count, [0.0] * count)
+    w["drive"][:], w["kind"][:] = -1, 1
+    w["closed"][:count] = w["touching"][:count] = 1
+    w["along"][:contacts] = w["against"][:contacts] = p["static"][:contacts]
+    w["slides"][0] = 1
+    w["whole"][0] = 0 if kind == "wall" else GUIDED
+    # as near as the first of its corners lets it come
+    at_walls = [k for k in range(count, contacts) if p["side"][k] > 0]
+    gaps = {(k, end): gap_of(p, w, k, end) for k in at_walls for end in (0, 1)}
+    w["q"][0 : 3 * count : 3] += min(gaps.values())
+    w["v"][0 : 3 * count : 3] = 1.0
+    if kind == "jam":
+        w["v"][0] = 0.0
+        w["v"][1 : 3 * count : 3] = -VANISHING * p["speed"]
+    for place, gap in gaps.items():
+        w["touching"][place] = gap <= min(gaps.values()) + 1e-12
+    return p, w
+
+
+@pytest.mark.parametrize("kind", ["wall", "stop", "jam"])
+@pytest.mark.parametrize("bodies", [1, 3, 5])
+@pytest.mark.parametrize("sticks", [False, True], ids=["slips", "sticks"])
+def test_a_flat_column_that_is_stopped_at_its_foot_has_a_consistent_impact(
+    kind: str, bodies: int, sticks: bool
+) -> None:
+    """A wall asks for what the base holds already, so that many modes say one thing twice."""
+    rng = np.random.default_rng(5)
+    for _ in range(40):
+        mus = [1e6] * bodies if sticks else list(rng.uniform(0.2, 1.0, bodies))
+        p, w = stopped_at_its_foot(rng, bodies, kind, mus)
+        trial = Trial(0.0, 0.0, True, float(p["mass"].sum()), 1.0)
+        assert violation_found(p, w, trial) <= CONSISTENT
+
+
+@entry_kernel
+def gap_of(p, w, k, end):
+    """Gap of an end at a wall [m]."""
+    look_at(p, w, w.q)
+    return wall_end(p, w, w.q, k, end, -1)[4]
+
+
+@entry_kernel
+def violation_found(p, w, trial):
+    """How far the mode that the package takes is from consistent."""
+    look_at(p, w, w.q)
+    return search(p, w, trial, NONE)
 
 
 @entry_kernel

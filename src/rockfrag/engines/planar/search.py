@@ -2,8 +2,8 @@
 
 A search starts from a mode, mends what it violates most, and goes on so until nothing is violated.  It is begun
 from the mode that has just failed, from the one in which all is open and, unless these two meet, from the one in
-which all is closed; of those that are consistent the one with fewest closed ends is taken.  Where none ends, all
-modes are tried, the neighbours of those tried first.
+which all is closed; of those that are consistent the one with fewest closed ends is taken.  Where none ends so, it
+is begun with all bodies leaning, and then all modes are tried, the neighbours of those tried first.
 
 In: a record ``BODY`` and its working memory. Out: in that memory the mode, and whether several were consistent.
 Theory there: "Which mode follows", equations 4 to 6; impacts 8 and 9.
@@ -323,11 +323,55 @@ def _try_anew(p, w, trial, exclude):
 @kernel
 def _descend(p, w, trial, exclude):
     """Mend the worst of the mode in ``w`` until none is left, its place, or a mode comes back."""
-    found = _try_anew(p, w, trial, exclude)
-    while found == FAILS and w.flip[0] >= 0:
-        change(w, w.flip[0], w.flip[1], w.flip[2], trial.impact)
+    found, shut = _try_anew(p, w, trial, exclude), -1
+    while found == FAILS:
+        k, what = w.flip[0], w.flip[1]
+        if k >= 0:
+            change(w, k, what, w.flip[2], trial.impact)
+            shut = k if what < SLIP and w.closed[k, what] == 1 else -1
+        elif not (shut >= 0 and _let_slide(p, w, shut)):
+            break
         found = _try_anew(p, w, trial, exclude)
     return found
+
+
+@kernel
+def _let_slide(p, w, shut):
+    """Let slide what sticks although something else holds it already; False if nothing does.
+
+    A mode is singular since contact ``shut`` has closed: a wall stops a body that its base holds as well. So that
+    contact slides, and if this is not enough the base of its body.
+    """
+    for k in (shut, p.upper[shut]):
+        if w.closed[k].any() and w.slides[k] == 0 and w.whole[k] != BONDED:
+            speed = w.free[k, 1] if w.closed[k, 0] == 1 else w.free[k, 3]
+            w.slides[k] = 1 if speed >= 0.0 else -1
+            return True
+    return False
+
+
+@kernel
+def _descend_from_leaning(p, w, trial, exclude):
+    """Begin anew with all bodies on their left corners, then on their right ones, off walls and at them.
+
+    Returned is the place of a consistent mode, or ``FAILS``.  What is pushed at its foot leans over.
+    """
+    for end in range(2):
+        for at_walls in range(2):
+            _set_all(p, w, 1)
+            for k in range(p.contacts):
+                if w.whole[k] != 0 or w.drive[k] >= 0:
+                    continue
+                if k < p.count:
+                    w.closed[k, end] = 0
+                elif at_walls == 0:
+                    w.closed[k, :] = 0
+                if not w.closed[k].any():
+                    w.slides[k] = 0
+            found = _descend(p, w, trial, exclude)
+            if found >= 0:
+                return found
+    return FAILS
 
 
 @kernel
@@ -337,7 +381,8 @@ def _try_neighbours(p, w, trial, exclude):
     Returned is its place in the list, or ``FAILS``.
     """
     at = 0
-    while at < w.count:
+    # a full list takes no more
+    while at < w.count and w.count < w.wrong.size:
         for k in range(p.contacts):
             for what in range(CHANGES):
                 _take_tried(p, w, at)
@@ -422,6 +467,12 @@ def _set_all(p, w, closed):
 
 
 @kernel
+def _is_inconsistent(w):
+    """Whether all modes that have been tried are violated by more than rounding."""
+    return w.wrong[np.argmin(w.wrong[: w.count])] > ROUNDING
+
+
+@kernel
 def search(p, w, trial, exclude):
     """Set the mode of ``w`` to a consistent one that its touching ends allow, or the least violated; by how much.
 
@@ -447,7 +498,9 @@ def search(p, w, trial, exclude):
         several = several or more
     if several:
         w.outcome.several_modes += 1
-    if found < 0 and w.wrong[np.argmin(w.wrong[: w.count])] > ROUNDING:
+    if found < 0 and _is_inconsistent(w):
+        found = _descend_from_leaning(p, w, trial, exclude)
+    if found < 0 and _is_inconsistent(w):
         found = _try_neighbours(p, w, trial, exclude)
     if found < 0:
         found = np.argmin(w.wrong[: w.count])
