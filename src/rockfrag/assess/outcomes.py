@@ -238,13 +238,14 @@ class Shaking(IntensityLevels):
 
     def seconds_of(self, objects: Standing) -> float:
         """About how long a core takes to shake one body of an object [s]."""
-        kind, bodies = "rocks", 1
+        kind = "rocks"
         if self.motions.both and objects.in_space:
             kind = "space"
         elif objects.many:
-            kind, bodies = "contact", 1 + len(objects.pedestals)
+            kind = "contact"
+        bodies = 1 + len(objects.pedestals) if objects.many else 1
         each = [holder.seconds for holder in objects.under.holders]
-        return self.scales.size * max(SECONDS[kind] * bodies, *each, 0.0)
+        return self.scales.size * bodies * max(SECONDS[kind], *each, 0.0)
 
     def outcomes_of_each(
         self,

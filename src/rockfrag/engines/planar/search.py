@@ -38,6 +38,9 @@ FAILS, SEEN = -1, -2  # what a mode that is tried is, unless it is consistent
 SLIP = 2
 CHANGES = 5  # of one contact: both ends, and three ways to slide
 NONE = (-1, -1)  # no mode
+# what a search starts from: the mode in memory, all open, all closed, and all leaning to either side, off walls
+# and at them
+LEANING, STARTS = 3, 7
 BONDED = 1  # what a contact is that neither opens nor slides
 
 
@@ -351,30 +354,6 @@ def _let_slide(p, w, shut):
 
 
 @kernel
-def _descend_from_leaning(p, w, trial, exclude):
-    """Begin anew with all bodies on their left corners, then on their right ones, off walls and at them.
-
-    Returned is the place of a consistent mode, or ``FAILS``.  What is pushed at its foot leans over.
-    """
-    for end in range(2):
-        for at_walls in range(2):
-            _set_all(p, w, 1)
-            for k in range(p.contacts):
-                if w.whole[k] != 0 or w.drive[k] >= 0:
-                    continue
-                if k < p.count:
-                    w.closed[k, end] = 0
-                elif at_walls == 0:
-                    w.closed[k, :] = 0
-                if not w.closed[k].any():
-                    w.slides[k] = 0
-            found = _descend(p, w, trial, exclude)
-            if found >= 0:
-                return found
-    return FAILS
-
-
-@kernel
 def _try_neighbours(p, w, trial, exclude):
     """Try all modes that differ in one thing from those that were tried, then their neighbours, until one fits.
 
@@ -467,6 +446,20 @@ def _set_all(p, w, closed):
 
 
 @kernel
+def _lean(p, w, end, at_walls):
+    """Open ``end`` of all interfaces, and walls unless ``at_walls``, as what is stopped at its foot leans."""
+    for k in range(p.contacts):
+        if w.whole[k] != 0 or w.drive[k] >= 0:
+            continue
+        if k < p.count:
+            w.closed[k, end] = 0
+        elif at_walls == 0:
+            w.closed[k, :] = 0
+        if not w.closed[k].any():
+            w.slides[k] = 0
+
+
+@kernel
 def _is_inconsistent(w):
     """Whether all modes that have been tried are violated by more than rounding."""
     return w.wrong[np.argmin(w.wrong[: w.count])] > ROUNDING
@@ -482,9 +475,13 @@ def search(p, w, trial, exclude):
     prepare(p, w, trial)
     _only_touching(p, w, trial)
     w.count, found, several = 0, -1, False
-    for start in range(3):
+    for start in range(STARTS):
+        if start >= LEANING and (found >= 0 or not _is_inconsistent(w)):
+            break
         if start > 0:
-            _set_all(p, w, start - 1)
+            _set_all(p, w, min(start - 1, 1))
+        if start >= LEANING:
+            _lean(p, w, (start - LEANING) // 2, (start - LEANING) % 2)
         other = _descend(p, w, trial, exclude)
         if other >= 0:
             several = several or found >= 0
@@ -498,8 +495,6 @@ def search(p, w, trial, exclude):
         several = several or more
     if several:
         w.outcome.several_modes += 1
-    if found < 0 and _is_inconsistent(w):
-        found = _descend_from_leaning(p, w, trial, exclude)
     if found < 0 and _is_inconsistent(w):
         found = _try_neighbours(p, w, trial, exclude)
     if found < 0:
