@@ -38,9 +38,17 @@ FAILS, SEEN = -1, -2  # what a mode that is tried is, unless it is consistent
 SLIP = 2
 CHANGES = 5  # of one contact: both ends, and three ways to slide
 NONE = (-1, -1)  # no mode
-# what a search starts from: the mode in memory, all open, all closed, and all leaning to either side, off walls
-# and at them
-LEANING, STARTS = 3, 7
+# what a search begins with after the mode in memory: whether left ends are closed, right ones, and walls
+STARTS = (
+    (0, 0, 0),
+    (1, 1, 1),
+    # leaning, as what is stopped at its foot does
+    (0, 1, 0),
+    (0, 1, 1),
+    (1, 0, 0),
+    (1, 0, 1),
+)
+LEANING = 3  # starts before those that lean: the mode in memory, all open, all closed
 BONDED = 1  # what a contact is that neither opens nor slides
 
 
@@ -430,33 +438,21 @@ def _try_slips(p, w, trial, found):
 
 
 @kernel
-def _set_all(p, w, closed):
-    """Open all ends, or close and let stick all that touch, but for what a given speed of an end needs."""
+def _set_all(p, w, start):
+    """Close the ends of a ``start`` that touch and let them stick, but for what a given speed of an end needs."""
+    left, right, at_walls = start
     for k in range(p.contacts):
+        closes = (left, right) if k < p.count else (at_walls, at_walls)
         w.slides[k] = 0
         for end in range(2):
-            stays = 1 if w.whole[k] != 0 else closed
+            stays = 1 if w.whole[k] != 0 else closes[end]
             w.closed[k, end] = stays * w.touching[k, end]
-        touches = closed == 1 and w.touching[k, 0] + w.touching[k, 1] > 0
+        touches = closes[0] + closes[1] > 0 and w.closed[k].any()
         if touches or w.whole[k] == GUIDED:
             w.slides[k] = w.moves[k]
         if w.drive[k] >= 0:
             w.closed[k, w.drive[k]] = 0
             w.closed[k, 1 - w.drive[k]] = 1
-
-
-@kernel
-def _lean(p, w, end, at_walls):
-    """Open ``end`` of all interfaces, and walls unless ``at_walls``, as what is stopped at its foot leans."""
-    for k in range(p.contacts):
-        if w.whole[k] != 0 or w.drive[k] >= 0:
-            continue
-        if k < p.count:
-            w.closed[k, end] = 0
-        elif at_walls == 0:
-            w.closed[k, :] = 0
-        if not w.closed[k].any():
-            w.slides[k] = 0
 
 
 @kernel
@@ -475,13 +471,11 @@ def search(p, w, trial, exclude):
     prepare(p, w, trial)
     _only_touching(p, w, trial)
     w.count, found, several = 0, -1, False
-    for start in range(STARTS):
-        if start >= LEANING and (found >= 0 or not _is_inconsistent(w)):
+    for start in range(1 + len(STARTS)):
+        if start >= LEANING and not _is_inconsistent(w):
             break
         if start > 0:
-            _set_all(p, w, min(start - 1, 1))
-        if start >= LEANING:
-            _lean(p, w, (start - LEANING) // 2, (start - LEANING) % 2)
+            _set_all(p, w, STARTS[start - 1])
         other = _descend(p, w, trial, exclude)
         if other >= 0:
             several = several or found >= 0
@@ -495,7 +489,7 @@ def search(p, w, trial, exclude):
         several = several or more
     if several:
         w.outcome.several_modes += 1
-    if found < 0 and _is_inconsistent(w):
+    if _is_inconsistent(w):
         found = _try_neighbours(p, w, trial, exclude)
     if found < 0:
         found = np.argmin(w.wrong[: w.count])
