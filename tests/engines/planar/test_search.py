@@ -125,6 +125,17 @@ def test_the_search_finds_a_consistent_mode_wherever_there_is_one(
     assert counts["more closed"] < 0.004 * number
 
 
+@pytest.mark.parametrize("bodies", [4, 6, 8])
+def test_every_impact_of_a_column_has_a_consistent_mode(bodies: int) -> None:
+    """Coulomb's law on velocities has an outcome for any speeds (Stewart and Trinkle, 1996)."""
+    rng = np.random.default_rng(1)
+    for _ in range(300):
+        p, w = situation(rng, bodies, True)
+        speed = float(np.abs(w["v"]).max())
+        trial = Trial(0.0, 0.0, True, float(p["mass"].sum()) * speed, speed)
+        assert violation_found(p, w, trial) <= CONSISTENT
+
+
 def modes_of(touching: np.ndarray, moves: np.ndarray, impact: bool) -> np.ndarray:
     """Numbers of all modes of touching ends, fewer closed ends first."""
     choices = []

@@ -160,6 +160,8 @@ WORK = np.dtype(
         *whole("old_slides", ALL),
         # contact, what and how: the change that mends the worst of a mode
         *whole("flip", 3),
+        # by which rule a search mends, and where in the list the modes begin that this rule has tried
+        *whole("mends first"),
         *whole("count"),  # of the modes that a search has tried ...
         # ... their numbers, of contacts of bodies with each other and with walls ...
         *whole("tried", TRIES, 2),

@@ -3,7 +3,8 @@
 A search starts from a mode, mends what it violates most, and goes on so until nothing is violated.  It is begun
 from the mode that has just failed, from the one in which all is open and, unless these two meet, from the one in
 which all is closed; of those that are consistent the one with fewest closed ends is taken.  Where none ends so, it
-is begun with all bodies leaning, and then all modes are tried, the neighbours of those tried first.
+is begun with all bodies leaning, then what is violated at the lowest contact is mended first, or at the highest one,
+and then the neighbours of all modes that were tried are tried.
 
 In: a record ``BODY`` and its working memory. Out: in that memory the mode, and whether several were consistent.
 Theory there: "Which mode follows", equations 4 to 6; impacts 8 and 9.
@@ -32,12 +33,18 @@ from rockfrag.engines.planar.ties import fill_tie_accelerations
 CONSISTENT = 2e-13
 # relative motion of a closed end where a mode was singular but for rounding [-]
 UNSOLVED = 1e-6
-ROUNDING = 1e-10  # violation up to which a mode is taken where none is consistent
+# violation up to which a mode is taken where none is consistent: of how a motion goes on, and of an impact
+ROUNDING = (1e-7, 1e-10)
+# modes that are tried at most where a motion cannot go on: a jam of more than three contacts has none
+TRIES_OF_MOTIONS = 256
 FAILS, SEEN = -1, -2  # what a mode that is tried is, unless it is consistent
 # what changes between modes: whether the end 0 or 1 is closed, or how an interface slides
 SLIP = 2
 CHANGES = 5  # of one contact: both ends, and three ways to slide
 NONE = (-1, -1)  # no mode
+# what a search mends: the worst violation, that of the lowest contact, or that of the highest
+WORST, LOWEST, HIGHEST = 0, 1, 2
+RULES = 3
 # what a search begins with after the mode in memory: whether left ends are closed, right ones, and walls
 STARTS = (
     (0, 0, 0),
@@ -48,7 +55,7 @@ STARTS = (
     (1, 0, 0),
     (1, 0, 1),
 )
-LEANING = 3  # starts before those that lean: the mode in memory, all open, all closed
+USUAL = 2  # of these that are always tried: all open, all closed
 BONDED = 1  # what a contact is that neither opens nor slides
 
 
@@ -179,11 +186,14 @@ def _motion_of(p, w, k, row):
 
 @kernel
 def _note_worst(w, worst, margin, k, what, way):
-    """Least margin so far; remember what would mend it."""
-    if margin < worst:
+    """Least margin so far; remember what would mend it, or the violation that is to be mended first."""
+    if w.mends == WORST:
+        is_next = margin < worst
+    else:
+        is_next = margin < -CONSISTENT and (w.mends == HIGHEST or w.flip[0] < 0)
+    if is_next:
         w.flip[0], w.flip[1], w.flip[2] = k, what, way
-        return margin
-    return worst
+    return min(worst, margin)
 
 
 @kernel
@@ -306,8 +316,8 @@ def _closed_ends(p, w, place):
 
 @kernel
 def _place_of(w, mode):
-    """Place of a mode in the list of those that have been tried, -1 if it has not been."""
-    for i in range(w.count):
+    """Place of a mode in the list of those that have been tried by the same rule, -1 if it has not been."""
+    for i in range(w.first, w.count):
         if w.tried[i, 0] == mode[0] and w.tried[i, 1] == mode[1]:
             return i
     return -1
@@ -367,9 +377,11 @@ def _try_neighbours(p, w, trial, exclude):
 
     Returned is its place in the list, or ``FAILS``.
     """
-    at = 0
+    at, most = 0, w.wrong.size
+    if not trial.impact and p.contacts > 3:
+        most = TRIES_OF_MOTIONS
     # a full list takes no more
-    while at < w.count and w.count < w.wrong.size:
+    while at < w.count and w.count < most:
         for k in range(p.contacts):
             for what in range(CHANGES):
                 _take_tried(p, w, at)
@@ -438,9 +450,14 @@ def _try_slips(p, w, trial, found):
 
 
 @kernel
-def _set_all(p, w, start):
-    """Close the ends of a ``start`` that touch and let them stick, but for what a given speed of an end needs."""
+def _begin(p, w, rule, start):
+    """Close the ends of a ``start`` that touch and let them stick, but for what a given speed of an end needs.
+
+    What another ``rule`` of mending has tried may come again.
+    """
     left, right, at_walls = start
+    if rule != w.mends:
+        w.mends, w.first = rule, w.count
     for k in range(p.contacts):
         closes = (left, right) if k < p.count else (at_walls, at_walls)
         w.slides[k] = 0
@@ -456,9 +473,10 @@ def _set_all(p, w, start):
 
 
 @kernel
-def _is_inconsistent(w):
+def _is_inconsistent(w, trial):
     """Whether all modes that have been tried are violated by more than rounding."""
-    return w.wrong[np.argmin(w.wrong[: w.count])] > ROUNDING
+    least = w.wrong[np.argmin(w.wrong[: w.count])]
+    return least > ROUNDING[1 if trial.impact else 0]
 
 
 @kernel
@@ -470,12 +488,14 @@ def search(p, w, trial, exclude):
     """
     prepare(p, w, trial)
     _only_touching(p, w, trial)
-    w.count, found, several = 0, -1, False
-    for start in range(1 + len(STARTS)):
-        if start >= LEANING and not _is_inconsistent(w):
+    w.count, w.mends, w.first = 0, WORST, 0
+    found, several = -1, False
+    for start in range(1 + RULES * len(STARTS)):
+        if start > USUAL and not _is_inconsistent(w, trial):
             break
         if start > 0:
-            _set_all(p, w, STARTS[start - 1])
+            rule, row = (start - 1) // len(STARTS), (start - 1) % len(STARTS)
+            _begin(p, w, rule, STARTS[row])
         other = _descend(p, w, trial, exclude)
         if other >= 0:
             several = several or found >= 0
@@ -484,12 +504,13 @@ def search(p, w, trial, exclude):
         elif other == SEEN and found >= 0:
             # it has come upon what was tried before: two ways lead to the same mode
             break
+    w.mends, w.first = WORST, 0
     if found >= 0:
         found, more = _try_slips(p, w, trial, found)
         several = several or more
     if several:
         w.outcome.several_modes += 1
-    if _is_inconsistent(w):
+    if _is_inconsistent(w, trial):
         found = _try_neighbours(p, w, trial, exclude)
     if found < 0:
         found = np.argmin(w.wrong[: w.count])
