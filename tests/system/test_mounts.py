@@ -73,9 +73,7 @@ def test_what_holds_an_object_meets_its_upper_corners_and_ends_beside_all_that_s
 
 def test_a_bracket_reaches_to_the_wall_that_is_near_and_is_short_where_none_is():
     system = as_system(BLOCK)
-    near, none = (
-        mounts.bracket_at_top(system, 1e4, length=gap) for gap in (0.02, 0.0)
-    )
+    near, none = (mounts.bracket_at_top(system, 1e4, length=gap) for gap in (0.02, 0.0))
     wall = mounts.wall_beside(system, 0.02)
     assert near.anchor[0] == pytest.approx(wall.distance)
     assert none == mounts.bracket_at_top(system, 1e4)
