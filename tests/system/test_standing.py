@@ -184,6 +184,7 @@ def test_two_that_rock_as_one_have_the_centre_and_the_inertia_of_both():
         centre, base = centre_above(system, 0), system.bodies[0].ends[0]
         ends = base.middle + numbers([system.pile.left, system.pile.right])
         np.testing.assert_allclose(ends, contact_ends(system, 1), atol=1e-14)
+        assert complex(*common_centre(system)) == pytest.approx(centre, abs=1e-14)
         assert whole.x + base.middle + 1j * whole.y == pytest.approx(centre, abs=1e-14)
         inertia = sum(
             body.inertia + body.mass * abs(at - centre) ** 2
