@@ -1,5 +1,8 @@
 """Walls, cords, brackets and putty lie where the bodies that they hold stand."""
 
+import math
+from dataclasses import replace
+
 import pytest
 
 from rockfrag import Block, Column, InputError, Stack
@@ -15,7 +18,7 @@ STANDING = {
         (Block(0.8, 0.2, 300.0), Block(0.5, 0.3, 90.0), BLOCK), (0.04, -0.03)
     ),
 }
-"""Blocks with level bases, and how far right and left they reach [m], which :func:`reaches` says."""
+"""Blocks with level bases."""
 
 
 def edges(system: System) -> list[tuple[float, float]]:
@@ -45,6 +48,8 @@ def test_what_holds_an_object_meets_its_upper_corners_and_ends_beside_all_that_s
         ((x, z),) = standing_points(system, -1, [(tie.point[0], tie.point[2])])
         # from the corner on that side, level
         assert x == pytest.approx(found[-1][side > 0])
+        # in the plane of the bodies
+        assert tie.point[1] == tie.anchor[1] == 0.0
         assert z == tie.anchor[2] == pytest.approx(top)
         if away is None:
             # a cord ends its own length away from the corner or from what reaches beyond it
@@ -60,10 +65,16 @@ def test_what_holds_an_object_meets_its_upper_corners_and_ends_beside_all_that_s
         (1e4, 0.01, 500.0)
     ] * 2
     assert bracket.bracket and not cords[0].bracket
+    assert (bracket.slack, bracket.strength) == (0.0, math.inf)
+    plain = mounts.cords_at_top(system, 1e4)
+    assert [(tie.slack, tie.strength) for tie in plain] == [(0.0, math.inf)] * 2
     for side in (-1, 1):
         wall = mounts.wall_beside(system, 0.07, side, restitution=0.3)
         assert (wall.side, wall.distance) == (side, pytest.approx(beyond[side] + 0.07))
         assert hold(system, wall).holding == ("wall 1",)
+        # it stops what hits it, at any height
+        assert mounts.wall_beside(system, 0.07, side) == replace(wall, restitution=0.0)
+        assert (wall.height, wall.friction) == (math.inf, None)
     putty = mounts.putty_under(system, 80.0)
     assert (putty.tension, putty.shear) == (80.0, 80.0)
     assert putty.spread == pytest.approx((0.15, 0.15))
@@ -88,6 +99,7 @@ def test_free_casters_change_the_friction_under_the_lowest_body_alone():
     rolls = mounts.on_casters(system, "free")
     assert [each.friction for each in rolls.contacts] == [mounts.ROLLING, None]
     # the geometric middle of .01 to .1
-    assert mounts.ROLLING.static == pytest.approx((0.01 * 0.1) ** 0.5, rel=0.06)
+    middle = (0.01 * 0.1) ** 0.5
+    assert tuple(mounts.ROLLING) == pytest.approx((middle, middle), rel=0.06)
     with pytest.raises(InputError, match="expected locked or free"):
         mounts.on_casters(system, "loose")
