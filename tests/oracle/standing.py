@@ -63,7 +63,9 @@ def standing(system: System) -> list[StandingBody]:
         face = angle + contact.tilt
         outline = body.face or body.base
         edges = [
-            own + turn(face) @ [x, body.height] for x in (outline.left, outline.right)
+            own
+            + turn(angle) @ (middle + turn(contact.tilt) @ ([x, body.height] - middle))
+            for x in (outline.left, outline.right)
         ]
         found.append(
             StandingBody(
@@ -76,6 +78,7 @@ def standing(system: System) -> list[StandingBody]:
                 face,
             )
         )
-        origin, angle = own + turn(face) @ [0.0, body.height], face
+        raised = turn(contact.tilt) @ ([0.0, body.height] - middle)
+        origin, angle = own + turn(angle) @ (middle + raised), face
         low, high = outline.left, outline.right
     return found

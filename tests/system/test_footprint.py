@@ -4,7 +4,12 @@ import math
 
 import pytest
 
-from rockfrag.system.footprint import nearest_edge, pads_in_circle, reach
+from rockfrag.system.footprint import (
+    nearest_edge,
+    pads_in_circle,
+    pads_in_polygon,
+    reach,
+)
 
 TURN = 0.4
 
@@ -39,3 +44,25 @@ def test_four_pads_in_a_circle_lie_at_their_part_of_its_radius():
     wide, deep = pads_in_circle(0.4, 0.75)
     assert wide == deep
     assert math.hypot(wide, deep) == pytest.approx(0.75 * 0.4)
+
+
+def test_four_pads_lie_towards_the_corners_of_a_rectangle_along_its_sides():
+    corners = [(-0.3, -0.5), (0.3, -0.5), (0.3, 0.5), (-0.3, 0.5)]
+    assert pads_in_polygon(corners, 4, 0.8) == pytest.approx((0.24, 0.4))
+
+
+@pytest.mark.parametrize("sides", [3, 4, 5, 8])
+def test_pads_in_another_outline_lie_in_the_circle_that_touches_its_nearest_edge(sides):
+    angles = [0.1 + 2 * math.pi * k / sides for k in range(sides)]
+    corners = [(0.5 * math.cos(a), 0.5 * math.sin(a)) for a in angles]
+    # of a regular polygon
+    touching = 0.5 * math.cos(math.pi / sides)
+    found = pads_in_polygon(corners, sides, 0.8)
+    assert math.hypot(*found) == pytest.approx(0.8 * touching)
+    assert found[0] == found[1]
+
+
+def test_a_rectangle_that_lies_aside_of_its_origin_has_no_pads_outside():
+    corners = [(-0.1, -0.5), (0.3, -0.5), (0.3, 0.5), (-0.1, 0.5)]
+    wide, deep = pads_in_polygon(corners, 4, 1.0)
+    assert wide == deep == pytest.approx(0.1 * math.sqrt(0.5))

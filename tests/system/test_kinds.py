@@ -1,6 +1,8 @@
 """Kinds of things: usual sizes where none were measured, and those that were measured where they were."""
 
 import math
+import re
+from pathlib import Path
 
 import pytest
 
@@ -8,6 +10,8 @@ from rockfrag import InputError, read_request
 from rockfrag.config.schema import read_schema
 from rockfrag.system import block_of_kind, kind_named
 from rockfrag.system.kinds import KINDS
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
 @pytest.mark.parametrize("name", KINDS)
@@ -44,3 +48,27 @@ def test_a_kind_that_does_not_exist_is_answered_with_those_that_do():
         block_of_kind("bust", breadth=0.3)
     known = read_schema("statue")["properties"]["kind"]["enum"]
     assert known == list(KINDS)
+
+
+def test_the_documented_sizes_weights_and_friction_are_those_of_the_kinds():
+    text = (DOCS / "how-to" / "kinds.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(\S+)` \| (.+?) \| (\S+) \|", text, re.MULTILINE)
+    assert [name for name, *_ in rows] == list(KINDS)
+    for name, usual, friction in rows:
+        block, kind = block_of_kind(name), kind_named(name)
+        sizes = [
+            float(size) for size in usual.split(" cm")[0].split(" (")[0].split(" × ")
+        ]
+        outline = [kind.width_m, kind.depth_m, kind.height_m]
+        if len(sizes) == 2:
+            del outline[1]
+        assert [100 * size for size in outline] == pytest.approx(sizes)
+        mass, unit = re.search(r"([\d.]+) (kg|t)\b", usual).groups()
+        stated = float(mass) * (1000 if unit == "t" else 1)
+        assert block.mass == pytest.approx(stated, abs=50 if unit == "t" else 0.5)
+        centre = re.search(r"centre at (\d+) %", usual)
+        assert block.h / block.height == pytest.approx(
+            float(centre.group(1)) / 100 if centre else 0.5
+        )
+        assert kind.friction == float(friction)
+        assert block.round == ("round" in usual)

@@ -164,6 +164,17 @@ def test_an_accessor_of_a_billion_zeros_is_refused(tmp_path: Path):
         read_shape(written(tmp_path, tree), mass=100.0)
 
 
+def test_each_three_corners_of_an_accessor_are_one_triangle(tmp_path: Path):
+    tree = gltf_of_a_box()
+    unused = {"componentType": 5121, "count": 0, "type": "SCALAR"}
+    tree["accessors"].append(unused)
+    unused["count"] = 3 * MOST_TRIANGLES + 2
+    assert read_shape(written(tmp_path, tree), mass=100.0).mass == 100.0
+    unused["count"] += 1
+    with pytest.raises(InputError, match=f"has {MOST_TRIANGLES + 1} triangles"):
+        read_shape(written(tmp_path, tree), mass=100.0)
+
+
 @pytest.mark.parametrize("name", ["/dev/zero", "../outside.bin", "pipe", "link"])
 def test_a_buffer_elsewhere_or_that_is_no_file_is_refused(tmp_path: Path, name: str):
     folder = tmp_path / "meshes"
@@ -273,8 +284,16 @@ def test_too_many_triangles_are_refused_before_they_are_read(tmp_path: Path):
     said, memory, _ = read_alone(stl(tmp_path / "scan.stl", 10**7))
     assert "scan.stl: has 500 MB" in said and "make it coarser" in said
     assert memory < 0.3
+
+
+def test_a_file_of_more_triangles_than_are_read_is_refused(tmp_path: Path):
+    path = stl(tmp_path / "less.stl", MOST_TRIANGLES + 1)
+    with path.open("r+b") as file:
+        # its length counts, whatever its head says
+        file.seek(80)
+        file.write(struct.pack("<I", 1))
     with pytest.raises(InputError, match="has 2000001 triangles"):
-        read_shape(stl(tmp_path / "less.stl", MOST_TRIANGLES + 1), mass=1.0)
+        read_shape(path, mass=1.0)
     assert MOST_BYTES > 50 * MOST_TRIANGLES
     for ending, content in (
         (".ply", f"ply\nformat ascii 1.0\nelement face {10**8}\nend_header\n"),

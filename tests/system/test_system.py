@@ -71,6 +71,19 @@ def test_a_tensor_of_inertia_has_nine_numbers(value):
         checked_tensor(value)
 
 
+def test_a_tensor_that_is_turned_there_and_back_is_still_one():
+    """Rounding leaves it asymmetric by its last digits, where it is nothing otherwise."""
+    rng, asymmetric = np.random.default_rng(5), 0
+    for _ in range(10):
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        tensor = turn.T @ (turn @ np.diag([3.0, 2.5, 1.0]) @ turn.T) @ turn
+        asymmetric += not np.array_equal(tensor, tensor.T)
+        np.testing.assert_array_equal(checked_tensor(tensor), tensor)
+    assert asymmetric > 5
+    with pytest.raises(InputError, match="must be symmetric"):
+        checked_tensor([[3.0, 1e-6, 0.0], [0.0, 2.5, 0.0], [0.0, 0.0, 1.0]])
+
+
 def test_boxes_and_cylinders_in_space_are_seen_as_planar_blocks():
     box = Block(0.3, 1.0, 50.0, depth=0.2)
     assert box.system().in_plane().shapes == (Block(0.3, 1.0, 50.0).shape,)

@@ -191,10 +191,23 @@ class System:
     def pile(self) -> geometry.Pile:
         """The two bodies of a planar system as the kernels know them."""
         lower, upper = self.in_plane().bodies
-        aside = self.contacts[1].offset[0] + upper.ends[0].middle - lower.ends[1].middle
+        stand, face = lower.ends
         below, above = self.shapes
-        return geometry.pile_of(
-            below, above, lower.height, self.contacts[0].tilt, aside
+        tilt = self.contacts[0].tilt
+        pile = geometry.pile_of(
+            below._replace(b=(face.right - face.left) / 2),
+            above,
+            lower.height,
+            tilt,
+            self.contacts[1].offset[0] + upper.ends[0].middle - face.middle,
+        )
+        # a face may lie aside of the middle of the base
+        dx, dy = geometry.turned(face.middle - stand.middle, 0.0, tilt)
+        (left, left_up), (right, right_up) = pile.left, pile.right
+        return pile._replace(
+            lower=below,
+            left=(left + dx, left_up + dy),
+            right=(right + dx, right_up + dy),
         )
 
     @cached_property
@@ -580,8 +593,12 @@ def _bases(system: System) -> list[tuple[float, tuple[float, float], RigidBody]]
     angle, origin = 0.0, (0.0, 0.0)
     found = [(angle, origin, bodies[0])]
     for below, body, k in zip(bodies, bodies[1:], range(1, system.count), strict=False):
+        # an uneven base turns its body about the middle of that base
+        middle = below.ends[0].middle
+        dx, dy = geometry.turned(middle, 0.0, angle)
         angle += system.contacts[k - 1].tilt
-        dx, dy = geometry.turned(system.contacts[k].offset[0], below.height, angle)
-        origin = (origin[0] + dx, origin[1] + dy)
+        across = system.contacts[k].offset[0] - middle
+        aside, up = geometry.turned(across, below.height, angle)
+        origin = (origin[0] + (dx + aside), origin[1] + (dy + up))
         found.append((angle, origin, body))
     return found

@@ -12,7 +12,7 @@ from rockfrag.engines.planar.impact import kinetic_energy, strike
 from rockfrag.engines.planar.records import posed, system_record, working_memory
 from rockfrag.engines.planar.solve import look_at
 from rockfrag.simulation import MeasuredRestitution, simulate
-from rockfrag.system import ImpactLaw, System, geometry
+from rockfrag.system import Block, ImpactLaw, System, geometry
 
 from ...simulation.reference_bodies import random_motion
 from .cases import (
@@ -51,6 +51,13 @@ class Impact(NamedTuple):
         self, mus: np.ndarray, laws: list[ImpactLaw]
     ) -> tuple[np.ndarray, float]:
         """Velocities after it, and the fraction of the energy that is gained."""
+        v, gain, _ = self.struck(mus, laws)
+        return v, gain
+
+    def struck(
+        self, mus: np.ndarray, laws: list[ImpactLaw]
+    ) -> tuple[np.ndarray, float, int]:
+        """Likewise, and how many laws had to give way."""
         n = self.system.count
         p, w = (
             system_record(with_contacts(self.system, list(mus), laws), G),
@@ -66,7 +73,8 @@ class Impact(NamedTuple):
         w["closed"], w["touching"] = w["old_closed"], w["old_closed"]
         w["touching"][self.contact] = 1
         before, after = hit(p, w)
-        return w["v"][: 3 * n].copy(), (after - before) / before
+        gave_way = int(w["outcome"]["given_way"])
+        return w["v"][: 3 * n].copy(), (after - before) / before, gave_way
 
 
 def random_impact(rng: np.random.Generator, bodies: int) -> Impact:
@@ -141,6 +149,21 @@ def survey(number, seed):
         )
         counts["jumps in mu"] += jumps([0.5, 0.8, 1.0, 1.3, 2.0], by_friction, scale)
     return counts
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_couple_does_not_lift_a_squat_block_that_momentum_stops(side):
+    """Momentum leaves nothing to multiply where the block is wider than √2 of its height (Housner, 1963)."""
+    rng = np.random.default_rng(8)
+    for _ in range(5):
+        height = rng.uniform(0.2, 0.6)
+        block = Block(height * rng.uniform(1.5, 3.0), height, 50.0)
+        came = np.array([side * rng.uniform(0.1, 1.0)])
+        impact = Impact(block.system(), np.array([-side * 1e-13]), came, 0)
+        law = ImpactLaw("couple", 0.5, 0.5)
+        v, gain, gave_way = impact.struck(np.array([1.0]), [law])
+        assert (gain, gave_way) == (pytest.approx(-1.0), 0)
+        np.testing.assert_allclose(v, 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize(
