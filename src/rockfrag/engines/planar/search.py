@@ -3,8 +3,8 @@
 A search starts from a mode, mends what it violates most, and goes on so until nothing is violated.  It is begun
 from the mode that has just failed, from the one in which all is open and, unless these two meet, from the one in
 which all is closed; of those that are consistent the one with fewest closed ends is taken.  Where none ends so, it
-is begun with all bodies leaning, then what is violated at the lowest contact is mended first, or at the highest one,
-and then the neighbours of all modes that were tried are tried.
+is begun with all bodies leaning, then the violation at the lowest contact is mended first, or that at the highest
+(a least index: K. G. Murty, Opsearch 11, 1974, 123-130), and then the neighbours of all tried modes are tried.
 
 In: a record ``BODY`` and its working memory. Out: in that memory the mode, and whether several were consistent.
 Theory there: "Which mode follows", equations 4 to 6; impacts 8 and 9.
