@@ -70,7 +70,6 @@ def strike_alone(p, w, k, end):
         tangential = -way * p.kinetic[k] * normal
         approach += gain * normal
         way = way if to_end <= to_stop else 0
-        slip = 0.0
     if way == 0:
         hold = both / shear
         if abs(hold) > p.static[k]:
