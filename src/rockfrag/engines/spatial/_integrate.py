@@ -527,8 +527,10 @@ def land(body, y, gravity, cut, s):
     modes.impact(body, y, gravity, LANDING, s)
     rows = algebra.rotation(y)
     if body.rim == 0.0 and modes.count_touching(body, y, rows) >= 3:
-        # the points that open begin with no gap, not with one of rounding
+        # the points that open begin with no gap, not with one of rounding; what comes down by that lands as well
         modes.lay_flat(body, y)
+        if modes.is_approached(body, y, s):
+            modes.impact(body, y, gravity, LANDING, s)
     left = solid.energy(body, y, s.field[forces.GRAVITY])
     carried = (
         stands_within_balance(body, rows)

@@ -369,6 +369,14 @@ def approaches(body, y, rows, n, i, load, spin, pushed, s):
 
 
 @kernel
+def is_approached(body, y, s):
+    """Whether a contact that touches comes closer."""
+    rows = algebra.rotation(y)
+    moves = (algebra.to_body(rows, solid.centre_velocity(y)), solid.omega_of(y))
+    return missed(body, y, rows, 0, moves, CLOSE, False, s) >= 0
+
+
+@kernel
 def least_needed(n, found, s):
     """Place in s.which of the contact that another one may replace; -1 if all push.
 
