@@ -73,8 +73,8 @@ class Impact(NamedTuple):
         w["closed"], w["touching"] = w["old_closed"], w["old_closed"]
         w["touching"][self.contact] = 1
         before, after = hit(p, w)
-        gave_way = int(w["outcome"]["given_way"])
-        return w["v"][: 3 * n].copy(), (after - before) / before, gave_way
+        given_way = int(w["outcome"]["given_way"])
+        return w["v"][: 3 * n].copy(), (after - before) / before, given_way
 
 
 def random_impact(rng: np.random.Generator, bodies: int) -> Impact:
@@ -161,8 +161,8 @@ def test_a_couple_does_not_lift_a_squat_block_that_momentum_stops(side):
         came = np.array([side * rng.uniform(0.1, 1.0)])
         impact = Impact(block.system(), np.array([-side * 1e-13]), came, 0)
         law = ImpactLaw("couple", 0.5, 0.5)
-        v, gain, gave_way = impact.struck(np.array([1.0]), [law])
-        assert (gain, gave_way) == (pytest.approx(-1.0), 0)
+        v, gain, given_way = impact.struck(np.array([1.0]), [law])
+        assert (gain, given_way) == (pytest.approx(-1.0), 0)
         np.testing.assert_allclose(v, 0.0, atol=1e-12)
 
 

@@ -42,14 +42,11 @@ def drawn_attitude(rng: np.random.Generator, kind: str) -> np.ndarray:
     return turn if kind == "upright" else turn + rng.normal(0, 0.2, 3)
 
 
-def drawn_meeting(rng: np.random.Generator) -> Meeting:
-    """Draw a box whose furthest corners all but touch one wall or two, and mostly the ground."""
-    width, depth = rng.uniform(0.2, 0.6, 2)
-    block = Block(width, rng.uniform(0.3, 1.8), 1.0, depth=depth)
-    kind = str(rng.choice(["any", "any", "edge", "upright"]))
+def drawn_walls(rng: np.random.Generator) -> list[Wall]:
+    """Draw one wall or two across each other, rough and as often plastic as not."""
     # a body that is turned stands within its wall
     directions = [0.0, math.pi / 2][: int(rng.integers(1, 3))]
-    walls = [
+    return [
         Wall(
             1.0,
             direction,
@@ -58,6 +55,42 @@ def drawn_meeting(rng: np.random.Generator) -> Meeting:
         )
         for direction in directions
     ]
+
+
+def brought_near(
+    state: np.ndarray, arms: np.ndarray, walls: list[Wall], mu: float, lift: float
+) -> list[Touch]:
+    """Shift a body to where its furthest corners, at ``arms`` from its centre, all but touch; return where.
+
+    It is ``lift`` above the ground [m], whose coefficient of friction is ``mu``.
+    """
+    outwards = [
+        np.array([math.cos(wall.direction), math.sin(wall.direction), 0.0])
+        for wall in walls
+    ]
+    for away in outwards:
+        state[:3] += (1.0 - NEAR - (arms @ away).max()) * away
+    state[2] = NEAR - arms[:, 2].min() + lift
+    places = state[:3] + arms
+    touches = [
+        Touch(place, -away, wall.friction.static)
+        for away, wall in zip(outwards, walls, strict=True)
+        for place in places
+        if 1.0 - place @ away < 1e-6
+    ]
+    return touches + [
+        Touch(place, np.array([0.0, 0.0, 1.0]), mu)
+        for place in places
+        if place[2] < 1e-6
+    ]
+
+
+def drawn_meeting(rng: np.random.Generator) -> Meeting:
+    """Draw a box whose furthest corners all but touch one wall or two, and mostly the ground."""
+    width, depth = rng.uniform(0.2, 0.6, 2)
+    block = Block(width, rng.uniform(0.3, 1.8), 1.0, depth=depth)
+    kind = str(rng.choice(["any", "any", "edge", "upright"]))
+    walls = drawn_walls(rng)
     mu = rng.uniform(0.1, 1.0)
     system = hold(block.system(), *walls)
     contact = replace(system.contacts[0], friction=Friction(mu, mu))
@@ -66,22 +99,8 @@ def drawn_meeting(rng: np.random.Generator) -> Meeting:
     sides = np.array([width, depth, block.height]) / 2
     signs = np.array(np.meshgrid(*3 * [[-1, 1]])).reshape(3, -1).T
     arms = (signs * sides) @ attitude.T
-    outwards = [np.array([math.cos(a), math.sin(a), 0.0]) for a in directions]
-    for away in outwards:
-        state[:3] += (1.0 - NEAR - (arms @ away).max()) * away
-    state[2] = NEAR - arms[:, 2].min() + (0.3 if rng.uniform() < 0.2 else 0.0)
-    places = state[:3] + arms
-    touches = [
-        Touch(place, -away, wall.friction.static)
-        for away, wall in zip(outwards, walls, strict=True)
-        for place in places
-        if 1.0 - place @ away < 1e-6
-    ]
-    touches += [
-        Touch(place, np.array([0.0, 0.0, 1.0]), mu)
-        for place in places
-        if place[2] < 1e-6
-    ]
+    lift = 0.3 if rng.uniform() < 0.2 else 0.0
+    touches = brought_near(state, arms, walls, mu, lift)
     state[7:10] = rng.normal(0, 0.5, 3)
     state[10:13] = rng.normal(0, 1.0, 3)
     return Meeting(body, state, touches, float(np.linalg.norm(sides)))
@@ -94,12 +113,7 @@ def flat_meeting(rng: np.random.Generator) -> Meeting:
     outline = radius * np.column_stack([np.cos(around), np.sin(around)])
     lying = height**2 / 12 + 5 * radius**2 / 24
     inertia = np.diag([lying, lying, 5 * radius**2 / 12])
-    directions = [0.0, math.pi / 2][: int(rng.integers(1, 3))]
-    walls = []
-    for direction in directions:
-        grip = Friction(*(2 * [rng.uniform(0.0, 1.0)]))
-        bounce = float(rng.choice([0.0, rng.uniform(0.1, 1.0)]))
-        walls.append(Wall(1.0, direction, friction=grip, restitution=bounce))
+    walls = drawn_walls(rng)
     mu = rng.uniform(0.1, 1.0)
     base = Polygon(tuple(map(tuple, outline.tolist())))
     prism = RigidBody(1.0, inertia, (0.0, 0.0, height / 2), base, height, base)
@@ -110,20 +124,7 @@ def flat_meeting(rng: np.random.Generator) -> Meeting:
         np.column_stack([outline, np.full(6, z)]) for z in (-height / 2, height / 2)
     ]
     arms = np.vstack(ends) @ attitude.T
-    touches = []
-    for wall in walls:
-        away = np.array([math.cos(wall.direction), math.sin(wall.direction), 0.0])
-        state[:3] += (1.0 - NEAR - (arms @ away).max()) * away
-    state[2] = NEAR + height / 2
-    for wall in walls:
-        away = np.array([math.cos(wall.direction), math.sin(wall.direction), 0.0])
-        touches += [
-            Touch(place, -away, wall.friction.static)
-            for place in state[:3] + arms
-            if 1.0 - place @ away < 1e-8
-        ]
-    up = np.array([0.0, 0.0, 1.0])
-    touches += [Touch(place, up, mu) for place in state[:3] + arms[:6]]
+    touches = brought_near(state, arms, walls, mu, 0.0)
     state[7:10] = rng.normal(0, 0.5, 3)
     state[10:13] = rng.normal(0, 1.0, 3)
     return Meeting(body, state, touches, math.hypot(radius, height / 2))
