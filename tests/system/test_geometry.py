@@ -213,7 +213,7 @@ def test_a_statue_stands_where_its_centre_is_over_what_it_touches(offset, aside,
     """A base of 0.3 m, whose centre of gravity may be aside, on a pedestal of 0.6 m."""
     lower = Block(0.6, 0.5, 300.0).shape
     upper = Block(0.3, 0.6, 20.0, cg_offset=aside).shape
-    pile = geometry.pile_of(lower, upper, 0.5, 0.0, offset)
+    pile = geometry.pile_of(lower, upper, geometry.Face(0.3, 0.5, 0.0, 0.0, offset))
     assert geometry.failed_stability_check(pile) == why
     # what reaches beyond the pedestal's top
     for pivot in (1, -1):

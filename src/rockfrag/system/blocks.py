@@ -314,9 +314,9 @@ class Stack:
     def pile(self) -> geometry.Pile:
         """The stack as the kernels know it."""
         lower, upper = self.lower, self.upper
-        return geometry.pile_of(
-            lower.shape, upper.shape, lower.height, lower.lean, self.offset
-        )
+        below = lower.shape
+        face = geometry.Face(below.b, lower.height, lower.lean, 0.0, self.offset)
+        return geometry.pile_of(below, upper.shape, face)
 
     @property
     def mass(self) -> float:

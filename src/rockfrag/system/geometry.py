@@ -21,6 +21,16 @@ class Shape(NamedTuple):
     y: float
 
 
+class Face(NamedTuple):
+    """What a body carries another one on."""
+
+    half: float  # half its width [m]
+    height: float  # over the body's base [m]
+    lean: float  # of the body, clockwise [rad]
+    right: float  # of its middle from that of the body's base [m]
+    offset: float  # of the middle of the base that it carries from its own [m]
+
+
 class Pile(NamedTuple):
     """A statue as it stands on its pedestal."""
 
@@ -30,7 +40,7 @@ class Pile(NamedTuple):
     # as if its base were no wider than the part of it that lies on the pedestal
     upper: Shape
     lean: float  # of the pedestal [rad]
-    # of the middle of the statue's base from the middle of the pedestal's top [m]
+    # of the middle of the statue's base from that of the face it stands on [m]
     offset: float
     # left and right end of the contact, likewise
     low: float
@@ -359,28 +369,25 @@ def impulse_position(shape: Shape, restitution: float, pivot: int) -> float:
     return excess / (shape.mass * pivot * shape.b * (old - restitution * new))
 
 
-def pile_of(
-    lower: Shape, upper: Shape, height: float, lean: float, offset: float
-) -> Pile:
-    """Return a statue as it stands on a pedestal of this height [m], lean [rad] and offset [m].
+def pile_of(lower: Shape, upper: Shape, face: Face) -> Pile:
+    """Return a statue as it stands on a pedestal.
 
     Parameters
     ----------
     lower, upper : each as it stands by itself
-    height : of the pedestal [m]
-    lean : of the pedestal's top, clockwise [rad]
-    offset : of the middle of the statue's base from the middle of that top [m]
+    face : what the lower one carries the upper one on
 
     Returns
     -------
     The :class:`Pile`.
     """
-    # ends of what the base shares with the top, from the middle of the top [m]
-    low = max(-lower.b, offset - upper.b)
-    high = min(lower.b, offset + upper.b)
+    offset = face.offset
+    # ends of what the base shares with the face, from the middle of the face [m]
+    low = max(-face.half, offset - upper.b)
+    high = min(face.half, offset + upper.b)
     middle, on_contact = offset, upper
     # a base that overhangs stands on what it shares
-    if abs(offset) + upper.b > lower.b * (1 + 1e-12):
+    if abs(offset) + upper.b > face.half * (1 + 1e-12):
         middle = (low + high) / 2
         on_contact = Shape(
             (high - low) / 2,
@@ -389,9 +396,10 @@ def pile_of(
             upper.x - (middle - offset),
             upper.y,
         )
-    left = turned(middle - on_contact.b, height, lean)
-    right = turned(middle + on_contact.b, height, lean)
-    return Pile(lower, upper, on_contact, lean, offset, low, high, left, right)
+    middle += face.right
+    left = turned(middle - on_contact.b, face.height, face.lean)
+    right = turned(middle + on_contact.b, face.height, face.lean)
+    return Pile(lower, upper, on_contact, face.lean, offset, low, high, left, right)
 
 
 def reach(pile: Pile, ground_pivot: int, upper_pivot: int) -> tuple[float, float]:

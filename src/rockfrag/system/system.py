@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -188,44 +189,38 @@ class System:
         return tuple(found)
 
     @cached_property
+    def faces(self) -> tuple[geometry.Face, ...]:
+        """What each body of a planar system but the highest carries the next one on, from below."""
+        found = []
+        bodies = self.in_plane().bodies
+        for k, (below, above) in enumerate(pairwise(bodies)):
+            stand, face = below.ends
+            # of the base above, its middle from the origin of the base below
+            middle = self.contacts[k + 1].offset[0] + above.ends[0].middle
+            found.append(
+                geometry.Face(
+                    half=(face.right - face.left) / 2,
+                    height=below.height,
+                    # the body below leans as its own uneven base does
+                    lean=self.contacts[k].tilt,
+                    right=face.middle - stand.middle,
+                    offset=middle - face.middle,
+                )
+            )
+        return tuple(found)
+
+    @cached_property
     def pile(self) -> geometry.Pile:
         """The two bodies of a planar system as the kernels know them."""
-        lower, upper = self.in_plane().bodies
-        stand, face = lower.ends
-        below, above = self.shapes
-        tilt = self.contacts[0].tilt
-        pile = geometry.pile_of(
-            below._replace(b=(face.right - face.left) / 2),
-            above,
-            lower.height,
-            tilt,
-            self.contacts[1].offset[0] + upper.ends[0].middle - face.middle,
-        )
-        # a face may lie aside of the middle of the base
-        dx, dy = geometry.turned(face.middle - stand.middle, 0.0, tilt)
-        (left, left_up), (right, right_up) = pile.left, pile.right
-        return pile._replace(
-            lower=below,
-            left=(left + dx, left_up + dy),
-            right=(right + dx, right_up + dy),
-        )
+        lower, upper = self.shapes
+        return geometry.pile_of(lower, upper, self.faces[0])
 
     @cached_property
     def carried(self) -> tuple[geometry.Shape, ...]:
         """Each body of a planar system as it rocks: with a base as wide as what of it lies on the face below."""
-        if self.count == 2:
-            return self.shapes[0], self.pile.upper
-        bodies = self.in_plane().bodies
-        found = [self.shapes[0]]
-        for k in range(1, self.count):
-            shape, face = self.shapes[k], bodies[k - 1].ends[1]
-            middle = self.contacts[k].offset[0] + bodies[k].ends[0].middle
-            # ends of the contact: what of the base is over the face
-            low = max(face.left, middle - shape.b)
-            high = min(face.right, middle + shape.b)
-            aside = shape.x + middle - (low + high) / 2
-            found.append(shape._replace(b=(high - low) / 2, x=aside))
-        return tuple(found)
+        pairs = zip(pairwise(self.shapes), self.faces, strict=True)
+        above = (geometry.pile_of(*pair, face).upper for pair, face in pairs)
+        return self.shapes[0], *above
 
 
 def _check_constraint(constraint: object, system: System) -> None:

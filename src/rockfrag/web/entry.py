@@ -91,9 +91,9 @@ def note_frequencies(call, shape, g):
 @kernel
 def stacked(call, body, lower, upper, offset):
     """Describe a block on a pedestal: whether it stands, its record, its frequencies; return it as a pile."""
-    pile = geometry.pile_of(
-        lower, upper, call.pedestal.height, call.pedestal.lean, offset
-    )
+    pedestal = call.pedestal
+    face = geometry.Face(lower.b, pedestal.height, pedestal.lean, 0.0, offset)
+    pile = geometry.pile_of(lower, upper, face)
     if not geometry.can_stand(lower):
         call.fault = geometry.FALLS_ALONE
     if call.fault == geometry.STANDS:

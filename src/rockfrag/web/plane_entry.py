@@ -66,7 +66,8 @@ def describe_held(call):
     p, g = call.body, call.gravity
     upper, lower = entry.shape_of(call.statue), entry.shape_of(call.pedestal)
     call.fault = geometry.STANDS if geometry.can_stand(upper) else geometry.FALLS_ALONE
-    pile = geometry.pile_of(lower, upper, call.pedestal.height, 0.0, 0.0)
+    carries = geometry.Face(lower.b, call.pedestal.height, 0.0, 0.0, 0.0)
+    pile = geometry.pile_of(lower, upper, carries)
     shapes, whole = (upper, upper), upper
     if call.stacked != 0:
         if not geometry.can_stand(lower):
@@ -80,10 +81,10 @@ def describe_held(call):
     p.count = count + first
     mass = lower.mass + upper.mass if call.stacked != 0 else upper.mass
     foot = _describe.Foot(0.0, 0.0, 0.0)
-    under, carries = upper, _describe.Face(0.0, 0.0, 0.0, 0.0, 0.0)
+    under, face = upper, carries
     if first == 1:
         under = geometry.Shape(PLATE / 2, call.plate, call.plate, 0.0, 0.0)
-        carries = _describe.Face(PLATE / 2, THIN, 0.0, 0.0, 0.0)
+        face = geometry.Face(PLATE / 2, THIN, 0.0, 0.0, 0.0)
         foot = _describe.place_lowest(p, under)
         _fill_laws(p, 0, under, False, math.nan, 1.0, True)
         mass = call.plate + lower.mass + upper.mass
@@ -92,12 +93,11 @@ def describe_held(call):
     p.weight = g * mass
     ratios, alone = call.has_ratios != 0, call.stacked == 0
     if call.stacked != 0:
-        foot = _place(p, first, lower, under, carries, foot)
+        foot = _place(p, first, lower, under, face, foot)
         _fill_laws(p, first, lower, ratios, call.below, call.restitution_factor, False)
-        under = lower
-        carries = _describe.Face(lower.b, call.pedestal.height, 0.0, 0.0, 0.0)
+        under, face = lower, carries
     top = first + count - 1
-    _place(p, top, upper, under, carries, foot)
+    _place(p, top, upper, under, face, foot)
     _fill_laws(p, top, shapes[1], ratios, call.above, call.restitution_factor, alone)
     _describe.fill_contacts(p)
     _fill_holding(call, first, top, lower, upper)

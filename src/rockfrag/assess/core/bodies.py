@@ -10,7 +10,7 @@ import math
 
 from rockfrag.base.arrays import Floats
 from rockfrag.base.plausible import STONE
-from rockfrag.system.geometry import Shape, joined, pile_of, shape_of
+from rockfrag.system.geometry import Face, Shape, joined, pile_of, shape_of
 
 WIDTH, HEIGHT, MASS, INERTIA, CG_HEIGHT, CG_OFFSET, DEPTH = range(7)
 """Places in the row of a block; the depth is that of a rectangular base in space."""
@@ -108,9 +108,7 @@ def join(lower: Floats, upper: Floats, found: Floats) -> None:
         pile_of(
             shape_as_it_stands(lower),
             shape_as_it_stands(upper),
-            lower[HEIGHT],
-            0.0,
-            0.0,
+            Face(lower[WIDTH] / 2, lower[HEIGHT], 0.0, 0.0, 0.0),
         )
     )
     found[WIDTH] = lower[WIDTH]

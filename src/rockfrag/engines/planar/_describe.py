@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from rockfrag.base.elementary import atan2, hypot, sin_cos
 from rockfrag.system import geometry
-from rockfrag.system.geometry import Shape
+from rockfrag.system.geometry import Face, Shape
 
 
 class Foot(NamedTuple):
@@ -22,16 +22,6 @@ class Foot(NamedTuple):
     x: float
     y: float
     tilt: float  # of what it stands on, clockwise [rad]
-
-
-class Face(NamedTuple):
-    """What a body carries another one on."""
-
-    half: float  # half its width [m]
-    height: float  # over the body's base [m]
-    lean: float  # of the body, clockwise [rad]
-    right: float  # of its middle from that of the body's base [m]
-    offset: float  # of the middle of the base that it carries from its own [m]
 
 
 def place_lowest(p: Any, shape: Shape) -> Foot:
@@ -67,21 +57,15 @@ def place_above(
     Where it stands.
     """
     lower, own = shapes
-    wide = Shape(face.half, lower.mass, lower.inertia, lower.x, lower.y)
-    pile = geometry.pile_of(wide, own, face.height, face.lean, face.offset)
-    # of the body below, from the middle of its base: to that of its face, along the face and across
-    aside = geometry.turned(face.right, 0.0, face.lean)
-    top = geometry.turned(0.0, face.height, face.lean)
-    foot = geometry.turned(
-        pile.right[0] + aside[0], pile.right[1] + aside[1], below.tilt
-    )
-    middle = geometry.turned(
-        top[0] + aside[0] - wide.x, top[1] + aside[1] - wide.y, below.tilt
-    )
+    pile = geometry.pile_of(lower, own, face)
+    # right end and middle of the base above, and middle of the face, from the middle of the base below
+    foot = geometry.turned(pile.right[0], pile.right[1], below.tilt)
+    over = geometry.turned(face.right + face.offset, face.height, face.lean)
+    base = geometry.turned(over[0], over[1], below.tilt)
+    top = geometry.turned(face.right, face.height, face.lean)
     # the face from the centre of gravity of the body below
-    p.face[k, 0], p.face[k, 1], p.half[k] = middle[0], middle[1], wide.b
-    across = geometry.turned(face.offset, face.height, face.lean)
-    base = geometry.turned(across[0] + aside[0], across[1] + aside[1], below.tilt)
+    middle = geometry.turned(top[0] - lower.x, top[1] - lower.y, below.tilt)
+    p.face[k, 0], p.face[k, 1], p.half[k] = middle[0], middle[1], face.half
     tilt = below.tilt + face.lean
     p.tilt_sin[k], p.tilt_cos[k] = sin_cos(tilt)
     right = geometry.arm(pile.upper, 1)

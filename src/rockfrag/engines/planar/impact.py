@@ -12,6 +12,7 @@ from rockfrag.engines.planar.bonds import break_pulled
 from rockfrag.engines.planar.routh import contact_alone, strike_alone
 from rockfrag.engines.planar.search import (
     NONE,
+    ROUNDING,
     Trial,
     search,
     take_mode,
@@ -139,7 +140,7 @@ def settle(p, w, ah, av, exclude):
     old = whole_mode(p, w.old_closed, w.old_slides)
     trial = Trial(ah, av, False, p.weight, p.g)
     wrong = search(p, w, trial, old if exclude else NONE)
-    if exclude and wrong > 1e-7 and all_touch:
+    if exclude and wrong > ROUNDING and all_touch:
         # nothing else is better: the old mode failed by rounding only
         found = whole_mode(p, w.closed, w.slides)
         take_mode(p, w, old)

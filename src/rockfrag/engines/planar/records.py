@@ -215,27 +215,14 @@ def fill_geometry(p: np.void, system: System) -> None:
     p : record ``BODY`` with gravity
     system : planar bodies on each other; its lengths are from the origins of their bases [m]
     """
-    bodies, contacts, shapes = system.in_plane().bodies, system.contacts, system.shapes
+    shapes, faces = system.shapes, system.faces
     p["count"], p["weight"] = system.count, p["g"] * system.mass
     p["tilt_cos"][:] = 1.0
     body = with_attributes(p)
     foot = _describe.place_lowest(body, shapes[0])
     for k in range(1, system.count):
-        below, (stand, face) = bodies[k - 1], bodies[k - 1].ends
-        # of the body below, from the middle of its base to that of its face
-        right = face.middle - stand.middle
-        # of the base above, its middle from the origin of the base below
-        aside = contacts[k].offset[0] + bodies[k].ends[0].middle
-        carries = _describe.Face(
-            half=(face.right - face.left) / 2,
-            height=below.height,
-            # the body below leans as its own uneven base does
-            lean=contacts[k - 1].tilt,
-            right=right,
-            offset=aside - (right + stand.middle),
-        )
         pair = shapes[k - 1], shapes[k]
-        foot = _describe.place_above(body, k, pair, carries, foot)
+        foot = _describe.place_above(body, k, pair, faces[k - 1], foot)
 
 
 def system_record(system: System, g: float) -> np.void:

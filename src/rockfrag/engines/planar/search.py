@@ -33,8 +33,8 @@ from rockfrag.engines.planar.ties import fill_tie_accelerations
 CONSISTENT = 2e-13
 # relative motion of a closed end where a mode was singular but for rounding [-]
 UNSOLVED = 1e-6
-# violation up to which a mode is taken where none is consistent: of how a motion goes on, and of an impact
-ROUNDING = (1e-7, 1e-10)
+# violation of how a motion goes on, and of an impact, up to which a mode fails by rounding only
+ROUNDING, ROUNDING_OF_IMPACTS = 1e-7, 1e-10
 # modes that are tried at most where a motion cannot go on: a jam of more than three contacts has none
 TRIES_OF_MOTIONS = 256
 FAILS, SEEN = -1, -2  # what a mode that is tried is, unless it is consistent
@@ -476,7 +476,7 @@ def _begin(p, w, rule, start):
 def _is_inconsistent(w, trial):
     """Whether all modes that have been tried are violated by more than rounding."""
     least = w.wrong[np.argmin(w.wrong[: w.count])]
-    return least > ROUNDING[1 if trial.impact else 0]
+    return least > (ROUNDING_OF_IMPACTS if trial.impact else ROUNDING)
 
 
 @kernel
