@@ -26,7 +26,8 @@ from rockfrag.engines.pure_rocking.kernels.equations import BODY
 from rockfrag.engines.pure_rocking.kernels.lanes.block import PIVOT
 from rockfrag.engines.pure_rocking.kernels.lanes.case import BLOCK, OUTCOME
 from rockfrag.engines.pure_rocking.kernels.record import CONTACT_EVENT, SAMPLE
-from rockfrag.engines.spatial import _integrate as spatial
+from rockfrag.engines.spatial import _ground as ground
+from rockfrag.engines.spatial import _outcome as outcome
 from rockfrag.engines.spatial._body import BOND, MOST_VERTICES
 from rockfrag.engines.spatial.body import NEVER_SLIDES
 from rockfrag.engines.spatial.engine import AFTER, CUT_OFF, TOLERANCE
@@ -110,19 +111,19 @@ def build_space() -> bytes:
     """Return the bytes of the module of a body in space."""
     call, tables = (
         np.zeros(1, SPACE)[0],
-        [np.zeros((1, n)) for n in (3, 4, spatial.COLUMNS)],
+        [np.zeros((1, n)) for n in (3, 4, outcome.COLUMNS)],
     )
     entries: Entries = {
         "describe": (describe_solid, (call,)),
         "integrate": (integrate_solid, (call, *tables)),
     }
     constants = {
-        "gravity": GRAVITY, "tolerance": TOLERANCE, "cut": CUT_OFF, "after": AFTER, "rests": spatial.RESTS,
-        "window": spatial.WINDOW,
-        "columns": spatial.COLUMNS, "outcome": spatial.OUTCOME, "most": MOST_VERTICES,
-        "sticks": NEVER_SLIDES, "fell": spatial.FELL, "certain": spatial.CERTAIN_TIME,
-        "azimuth": spatial.FALL_AZIMUTH, "peak": spatial.PEAK_RATIO, "tilt": spatial.PEAK_TILT,
-        "turned": spatial.TURN, "walk": spatial.WALK_X, "held": spatial.HELD, "bond": BOND,
+        "gravity": GRAVITY, "tolerance": TOLERANCE, "cut": CUT_OFF, "after": AFTER, "rests": outcome.RESTS,
+        "window": ground.WINDOW,
+        "columns": outcome.COLUMNS, "outcome": outcome.OUTCOME, "most": MOST_VERTICES,
+        "sticks": NEVER_SLIDES, "fell": outcome.FELL, "certain": outcome.CERTAIN_TIME,
+        "azimuth": outcome.FALL_AZIMUTH, "peak": outcome.PEAK_RATIO, "tilt": outcome.PEAK_TILT,
+        "turned": outcome.TURN, "walk": outcome.WALK_X, "held": outcome.HELD, "bond": BOND,
     }  # fmt: skip
     return module_of(
         entries, {"call": SPACE}, constants, fused=None, inlining=SPACE_INLINING

@@ -12,7 +12,8 @@ from rockfrag.engines.compile.jit import compile_for_kernels, kernel
 from rockfrag.engines.spatial import _describe
 from rockfrag.engines.spatial._body import BODY, SIZE
 from rockfrag.engines.spatial._forces import CASE
-from rockfrag.engines.spatial._integrate import OUTCOME, integrate
+from rockfrag.engines.spatial._integrate import integrate
+from rockfrag.engines.spatial._outcome import OUTCOME
 from rockfrag.system import footprint, geometry
 
 _F, _I = np.float64, np.int64

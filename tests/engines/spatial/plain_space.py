@@ -8,11 +8,26 @@ from ...mutants.plain import plain_library
 
 with plain_library():
     from rockfrag.engines.algebra.vectors import rotation
+    from rockfrag.engines.spatial import _at_rest as at_rest
     from rockfrag.engines.spatial import _body as solid
     from rockfrag.engines.spatial import _cone as cone
+    from rockfrag.engines.spatial import _contacts as contacts
+    from rockfrag.engines.spatial import _events as events
+    from rockfrag.engines.spatial import _face as face
     from rockfrag.engines.spatial import _forces as forces
+    from rockfrag.engines.spatial import _gaps as gaps
+    from rockfrag.engines.spatial import _ground as ground
+    from rockfrag.engines.spatial import _holders as holders
+    from rockfrag.engines.spatial import _hops as hops
+    from rockfrag.engines.spatial import _impacts as impacts
     from rockfrag.engines.spatial import _integrate as whole
+    from rockfrag.engines.spatial import _limits as limits
     from rockfrag.engines.spatial import _modes as modes
+    from rockfrag.engines.spatial import _outcome as outcome
+    from rockfrag.engines.spatial import _points as points
+    from rockfrag.engines.spatial import _problem as problem
+    from rockfrag.engines.spatial import _rest as rest
+    from rockfrag.engines.spatial import _rim as rim
     from rockfrag.engines.spatial import _step as step
     from rockfrag.engines.spatial import _stick as stick
     from rockfrag.engines.spatial import engine
@@ -31,11 +46,26 @@ __all__ = [
     "System",
     "Tie",
     "Wall",
+    "at_rest",
     "cone",
+    "contacts",
     "engine",
+    "events",
+    "face",
     "forces",
+    "gaps",
+    "ground",
+    "holders",
+    "hops",
+    "impacts",
     "kernel_body",
+    "limits",
     "modes",
+    "outcome",
+    "points",
+    "problem",
+    "rest",
+    "rim",
     "rotation",
     "solid",
     "step",
@@ -92,7 +122,7 @@ def shaken(rng, size=2.0):
     s = case()
     s.field[:6] = rng.normal(0, size, 6)
     s.field[2] -= G
-    s.close = modes.CLOSE
+    s.close = limits.CLOSE
     return s
 
 

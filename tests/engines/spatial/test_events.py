@@ -23,17 +23,32 @@ from .plain_space import (
     System,
     Tie,
     Wall,
+    at_rest,
     attitude,
     case,
+    contacts,
+    events,
+    face,
     forces,
+    gaps,
+    ground,
+    holders,
+    hops,
+    impacts,
     inverse_mass,
     jacobian,
     kernel_body,
     leaning,
+    limits,
     mode,
     modes,
+    outcome,
     plain,
     point,
+    points,
+    problem,
+    rest,
+    rim,
     rotation,
     set_down,
     shaken,
@@ -75,13 +90,13 @@ def drum(off=(0.05, -0.03), radius=0.2, height=0.4):
 def test_a_body_that_meets_walls_alone_is_held_by_no_tie():
     rng, wall = np.random.default_rng(22), Wall(2.0, 0.0)
     tie = Tie((0.0, 0.0, 1.0), (2.0, 0.0, 1.2), 1e4)
-    for holders, alone in (
+    for ways, alone in (
         ((), False),
         ((wall,), True),
         ((wall, tie), False),
         ((tie,), False),
     ):
-        assert solid.meets_walls_alone(uneven(rng, *holders)) == alone
+        assert solid.meets_walls_alone(uneven(rng, *ways)) == alone
 
 
 def margins_of_rest(gravity, r):
@@ -108,7 +123,7 @@ def test_rest_ends_when_the_line_of_thrust_leaves_the_base_or_friction_is_used_u
             return min(edges.min(), shear)
 
         begins, ends = least(0.001), least(DT)
-        found = whole.rest_ends(body, y, s, 0.001, DT)
+        found = at_rest.rest_ends(body, y, s, 0.001, DT)
         if ends >= 0:
             seen.add("rests")
             assert found == -1.0
@@ -119,7 +134,7 @@ def test_rest_ends_when_the_line_of_thrust_leaves_the_base_or_friction_is_used_u
             edges, shear = margins_of_rest(s.field[:3] + DT * s.field[3:6], r)
             seen.add("slides" if shear < edges.min() else "tips")
             assert found == pytest.approx(brentq(least, 0.001, DT, xtol=1e-15))
-            assert modes.rest_margin(
+            assert rest.rest_margin(
                 body, y, rotation(y), tuple(s.field[:3] + found * s.field[3:6]), s
             ) == pytest.approx(0, abs=1e-10)
     assert seen == {"rests", "at once", "slides", "tips"}
@@ -142,14 +157,14 @@ def test_a_body_leaves_rest_over_the_edge_or_the_vertex_that_the_line_of_thrust_
     for part in (0.3, 0.7):
         s.field[:3] = thrust((1 - part) * CORNERS[i] + part * CORNERS[j])
         s.rests = 1
-        whole.leave_rest(body, y, 0.0, s)
+        at_rest.leave_rest(body, y, 0.0, s)
         assert sorted(s.closed[: s.count].tolist()) == sorted((i, j))
         assert (s.rests, s.slides[0], s.slides[1]) == (0, 0, 0)
         for k in range(2):
             place = y[:2] + CORNERS[s.closed[k]]
             assert s.anchor[k] == pytest.approx(place)
     s.field[:3] = thrust(CORNERS[i])
-    whole.leave_rest(body, y, 0.0, s)
+    at_rest.leave_rest(body, y, 0.0, s)
     assert s.closed[: s.count].tolist() == [i]
 
 
@@ -159,12 +174,12 @@ def test_a_body_leaves_rest_sliding_where_effective_gravity_takes_it():
     body.static = 0.2
     y = upright(body, 0.7)
     s.field[:3] = -0.6 * 0.2 * G, 0.8 * 0.2 * G, -G
-    whole.leave_rest(body, y, 0.0, s)
+    at_rest.leave_rest(body, y, 0.0, s)
     assert s.count == 4
     assert len(set(s.closed[:4].tolist())) == 4
     assert (s.slides[:4] == forces.SLIDES).all()
     assert s.direction[:4] == pytest.approx(np.tile((-0.6, 0.8), (4, 1)))
-    assert s.counters[modes.SLIDINGS] == 1
+    assert s.counters[limits.SLIDINGS] == 1
 
 
 def test_a_round_body_leaves_rest_over_the_rims_point_that_the_line_of_thrust_meets():
@@ -178,16 +193,16 @@ def test_a_round_body_leaves_rest_over_the_rims_point_that_the_line_of_thrust_me
         u = np.array([math.cos(way), math.sin(way)])
         at = np.array(body.centre) + body.rim * u
         s.field[:3] = thrust((r[:2, :2] @ at), body.height)
-        assert modes.topple_margin(body, rotation(y), s.field[:3]) == pytest.approx(
+        assert rest.topple_margin(body, rotation(y), s.field[:3]) == pytest.approx(
             0, abs=1e-12
         )
         before = y.copy()
         p = np.array([*at, -body.height])
-        whole.leave_rest(body, y, 0.0, s)
+        at_rest.leave_rest(body, y, 0.0, s)
         assert s.closed[: s.count].tolist() == [body.count]
         assert (s.rests, s.slides[0]) == (0, forces.STICKS)
         up = attitude(y)[2]
-        assert np.hypot(*up[:2]) == pytest.approx(whole.RIM_START, rel=1e-6)
+        assert np.hypot(*up[:2]) == pytest.approx(rim.RIM_START, rel=1e-6)
         assert -up[:2] / np.hypot(*up[:2]) == pytest.approx(u, abs=1e-6)
         touches = y[:3] + attitude(y) @ p
         assert touches == pytest.approx([*(before[:2] + r[:2, :2] @ at), 0], abs=1e-13)
@@ -206,11 +221,11 @@ def test_a_round_body_keeps_rest_while_the_line_of_thrust_meets_the_disc():
         meets = -body.height * gravity[:2] / gravity[2]
         centre = attitude(y)[:2, :2] @ np.array(body.centre)
         off = np.hypot(*(meets - centre))
-        margin = modes.topple_margin(body, rotation(y), gravity)
+        margin = rest.topple_margin(body, rotation(y), gravity)
         expected = (body.rim - off) * -gravity[2] / body.height
         assert margin == pytest.approx(expected, abs=1e-12)
         shear = -3.0 * gravity[2] - np.hypot(*gravity[:2])
-        whole_margin = modes.rest_margin(body, y, rotation(y), gravity, s)
+        whole_margin = rest.rest_margin(body, y, rotation(y), gravity, s)
         assert whole_margin == pytest.approx(min(margin, shear), abs=1e-12)
         kept.add(bool(margin > 0))
     assert kept == {True, False}
@@ -224,8 +239,8 @@ def test_feet_of_a_round_body_are_a_quarter_of_a_turn_apart_the_first_ahead():
         y[7:9] = rng.normal(size=2) * slides
         ahead = attitude(y)[:2, :2].T @ (y[7:9] if slides else s.field[:2])
         ahead /= np.hypot(*ahead)
-        assert modes.touching(body, y, rotation(y), s) == 4
-        assert modes.pick_feet(body, y, rotation(y), s) == 4
+        assert points.touching(body, y, rotation(y), s) == 4
+        assert points.pick_feet(body, y, rotation(y), s) == 4
         ways = [
             (np.array(body.points[i])[:2] - body.centre) / body.rim for i in s.which
         ]
@@ -235,7 +250,7 @@ def test_feet_of_a_round_body_are_a_quarter_of_a_turn_apart_the_first_ahead():
             turned = np.array([-ways[k][1], ways[k][0]])
             assert ways[k + 1] == pytest.approx(turned, abs=1e-12)
         y[2] += 1e-9
-        assert modes.touching(body, y, rotation(y), s) == 0
+        assert points.touching(body, y, rotation(y), s) == 0
 
 
 def test_a_pass_near_flat_turns_the_contact_on_and_keeps_tilt_and_its_rate():
@@ -249,13 +264,13 @@ def test_a_pass_near_flat_turns_the_contact_on_and_keeps_tilt_and_its_rate():
             y[10:13] = [*(0.03 * np.array([u[1], -u[0]]) + side * 1e-3 * u), 0.0]
             mode(s, body.count, slides=slides)
             y[:2] = 0.3, 0.1
-            modes.settle(body, y, s)
+            gaps.settle(body, y, s)
             up = attitude(y)[2]
             sinking = np.cross(up, y[10:13])[:2]
             here = -up[:2] / np.hypot(*up[:2])
             assert sinking @ here > 0
             before = solid.energy(body, y, G)
-            whole.pass_flat(body, y, s)
+            rim.pass_flat(body, y, s)
             up = attitude(y)[2]
             there = -up[:2] / np.hypot(*up[:2])
             angle = 2.6 if slides else 2.1
@@ -263,7 +278,7 @@ def test_a_pass_near_flat_turns_the_contact_on_and_keeps_tilt_and_its_rate():
             # the way in which the contact goes round already: across the rate of the vertical
             on = np.sign(here[1] * sinking[0] - here[0] * sinking[1])
             assert turn == pytest.approx(on * angle, abs=1e-6)
-            assert np.hypot(*up[:2]) == pytest.approx(2 * whole.FLAT_PASS, rel=1e-6)
+            assert np.hypot(*up[:2]) == pytest.approx(2 * rim.FLAT_PASS, rel=1e-6)
             rate = np.cross(up, y[10:13])[:2]
             assert rate @ up[:2] > 0
             # but for what the tilt of twice FLAT_PASS lifts
@@ -277,7 +292,7 @@ def test_a_pass_near_flat_turns_the_contact_on_and_keeps_tilt_and_its_rate():
                 assert speed == pytest.approx(0.0, abs=1e-12)
             # a second time it rises already
             again = y.copy()
-            whole.pass_flat(body, again, s)
+            rim.pass_flat(body, again, s)
             assert (again == y).all()
 
 
@@ -296,13 +311,13 @@ def test_a_body_in_the_air_lands_when_its_parabola_meets_the_ground():
         touch = (vertical + math.sqrt(vertical**2 + 2 * G * 2e-4)) / G
         least, what = step.margin(body, s.new, s)
         assert (least < 0) == (touch < DT)
-        assert what == modes.LANDS
-        h, what = whole.locate(body, 0.0, DT, y, s)
-        assert what == modes.LANDS
+        assert what == limits.LANDS
+        h, what = events.locate(body, 0.0, DT, y, s)
+        assert what == limits.LANDS
         # half of TOUCH under the ground
         deeper = (vertical + math.sqrt(vertical**2 + 2 * G * (2e-4 + 5e-11))) / G
         assert h == pytest.approx(deeper, abs=1e-12)
-        first = whole.lowest_open(body, s.new, s)
+        first = events.lowest_open(body, s.new, s)
         heights = [solid.gap(body, s.new, rotation(s.new)[2], i) for i in range(6)]
         assert first == np.argmin(heights)
         assert heights[first] == pytest.approx(-5e-11, abs=2e-12)
@@ -332,10 +347,10 @@ def test_the_first_instant_at_which_a_margin_vanishes_is_found(name):
         mode(s, *closed)
         s.slides[: len(closed)] = slides
         if closed:
-            modes.close_gaps(body, y, rotation(y), s)
-            modes.hold(body, y, rotation(y), s)
-            modes.anchor_all(body, y, s)
-            modes.settle(body, y, s)
+            gaps.close_gaps(body, y, rotation(y), s)
+            contacts.hold(body, y, rotation(y), s)
+            contacts.anchor_all(body, y, s)
+            gaps.settle(body, y, s)
         low = min(
             [solid.gap(body, y, rotation(y)[2], i) for i in range(6) if i not in closed]
         )
@@ -367,13 +382,13 @@ def test_the_first_instant_at_which_a_margin_vanishes_is_found(name):
         tau = max(first.t_events[0][0] - 1e-3, 0.0)
         y, h = first.sol(tau), 2e-3
         if closed:
-            modes.anchor_all(body, y, s)
+            contacts.anchor_all(body, y, s)
         step.begin(body, tau, y, s)
         exact = solve_ivp(path, (tau, tau + h), y, "DOP853", **given)
         if step.attempt(body, tau, h, y, s) > 1e-8 or not exact.t_events[0].size:
             # slip that hardly goes on is stiff
             continue
-        found, what = whole.locate(body, tau, h, y, s)
+        found, what = events.locate(body, tau, h, y, s)
         assert tau + found == pytest.approx(exact.t_events[0][0], abs=1e-8)
         assert s.new[:13] == pytest.approx(exact.y_events[0][0][:13], abs=1e-7)
         seen.add(what)
@@ -384,10 +399,10 @@ def test_peaks_from_each_sample_on_and_in_a_window_are_numpys():
     rng = np.random.default_rng(10)
     motion = rng.normal(size=(60, 3))
     peaks = np.zeros((60, 4))
-    whole.fill_peaks(motion, peaks)
+    ground.fill_peaks(motion, peaks)
     level, lift = np.hypot(motion[:, 0], motion[:, 1]), np.abs(motion[:, 2])
     for k in range(60):
-        ahead = slice(k, k + whole.WINDOW + 1)
+        ahead = slice(k, k + ground.WINDOW + 1)
         expected = [
             level[k:].max(),
             lift[k:].max(),
@@ -396,11 +411,11 @@ def test_peaks_from_each_sample_on_and_in_a_window_are_numpys():
         ]
         assert peaks[k] == pytest.approx(expected)
     s = case()
-    whole.note_soon(s, peaks, 20, 1.5, DT)
+    ground.note_soon(s, peaks, 20, 1.5, DT)
     assert s.soon[:2] == pytest.approx(1.5 * peaks[20, 2:])
     # intervals k to k + WINDOW - 1 end before the window's last sample
-    assert s.soon[2] == pytest.approx((whole.WINDOW - 1) * DT)
-    whole.note_soon(s, peaks, 60, 1.5, DT)
+    assert s.soon[2] == pytest.approx((ground.WINDOW - 1) * DT)
+    ground.note_soon(s, peaks, 60, 1.5, DT)
     assert s.soon[:2].tolist() == [0.0, 0.0]
 
 
@@ -408,14 +423,14 @@ def test_the_ground_is_linear_between_samples_and_at_rest_one_after_the_last():
     rng = np.random.default_rng(11)
     motion, field = rng.normal(size=(5, 3)), np.zeros(7)
     for k in range(7):
-        whole.set_field(field, motion, k, 1.5, DT, G)
+        ground.set_field(field, motion, k, 1.5, DT, G)
         for part in (0.0, 0.3, 1.0):
             time = (k + part) * DT
-            ground = [
+            along = [
                 np.interp(time, DT * np.arange(6), [*motion[:, i], 0.0]) * 1.5
                 for i in range(3)
             ]
-            expected = -np.array(ground) - (0, 0, G)
+            expected = -np.array(along) - (0, 0, G)
             found = forces.effective_gravity_at(field, part * DT)
             assert found == pytest.approx(expected, abs=1e-12)
         assert field[forces.GRAVITY] == G
@@ -432,7 +447,7 @@ def test_a_window_is_passed_at_rest_only_where_no_direction_of_its_peaks_moves_t
             gravity = [level * math.cos(angle), level * math.sin(angle), -weight]
             edges, shear = margins_of_rest(np.array(gravity), np.eye(3))
             rests = rests and edges.min() > 0 and shear > 0
-        assert whole.rests_on(body, peaks, 0, 1.5, G) == rests
+        assert at_rest.rests_on(body, peaks, 0, 1.5, G) == rests
         seen.add(rests)
     assert seen == {True, False}
 
@@ -443,7 +458,7 @@ def test_what_ties_bear_is_noted_and_they_turn_and_break_as_their_force_says():
     body, s = uneven(rng, tie), case()
     y = upright(body)
     y[9] = 1e-3
-    whole.begin_holding(body, y, s)
+    holders.begin_holding(body, y, s)
     assert (s.broken[0], s.hits[0]) == (0, 0.0)
     s.began, s.taut[0] = 2.0, 0
     for back, force in ((0.05, 25.0), (-0.05, 0.0), (0.2, 100.0)):
@@ -451,17 +466,17 @@ def test_what_ties_bear_is_noted_and_they_turn_and_break_as_their_force_says():
         way = np.array([0.9, 0.2, 0.1]) / math.hypot(0.9, 0.2, 0.1)
         y[:3] = np.array([0, 0, body.height]) - back * way
         y[7:10] = 0.0
-        whole.turn_ties(body, y, 0.3, False, s)
+        holders.turn_ties(body, y, 0.3, False, s)
         assert s.taut[0] == (back > 0)
-        whole.note_forces(body, y, s)
+        holders.note_forces(body, y, s)
         assert s.force[0] == pytest.approx(max(force, 25.0))
     assert s.hits[0] == 2
-    whole.turn_ties(body, y, 0.3, True, s)
+    holders.turn_ties(body, y, 0.3, True, s)
     assert (s.broken[0], s.breaks[0], s.force[0]) == (1, 2.3, body.strength[0])
     # a broken one neither bears nor breaks again
     s.force[0] = 0.0
-    whole.note_forces(body, y, s)
-    whole.turn_ties(body, y, 0.5, True, s)
+    holders.note_forces(body, y, s)
+    holders.turn_ties(body, y, 0.5, True, s)
     assert (s.force[0], s.breaks[0]) == (0.0, 2.3)
 
 
@@ -471,11 +486,11 @@ def test_a_bond_is_noted_with_half_of_what_it_holds_at_most():
     y = upright(body)
     body.pads[:], body.tension = 0.2, 9.0
     s.field[:6] = 2.0, 1.0, -G, 300.0, 0.0, 0.0
-    whole.note_bond(body, y, 0.0, s)
+    holders.note_bond(body, y, 0.0, s)
     # (-g + (|2| + |1|) h / pad) / 2
     first = 0.5 * (-G + 3.0 * 0.6 / 0.2)
     assert s.force[solid.BOND] == pytest.approx(max(first, 0.0))
-    whole.note_bond(body, y, DT, s)
+    holders.note_bond(body, y, DT, s)
     assert s.force[solid.BOND] == pytest.approx(min(0.5 * (-G + 18.0), 4.5))
 
 
@@ -490,7 +505,7 @@ def test_a_state_is_settled_on_what_it_pivots_about(closed):
     mode(s, *((body.count,) if closed == "rim" else closed))
     s.anchor[0] = 0.3, -0.2
     spin, plan = y[10:13].copy(), y[:2].copy()
-    modes.settle(body, y, s)
+    gaps.settle(body, y, s)
     p = np.array(solid.arm(body, rotation(y)[2], s.closed[0]))
     touches = y[:3] + attitude(y) @ p
     assert touches[2] == pytest.approx(0, abs=1e-15)
@@ -513,9 +528,9 @@ def test_slips_that_have_ended_stick_and_what_is_left_of_them_is_stopped():
         body, s = uneven(rng), case()
         y = leaning(body, 0.2, 0.4)
         mode(s, 2, slides=forces.SLIDES)
-        modes.close_gaps(body, y, rotation(y), s)
+        gaps.close_gaps(body, y, rotation(y), s)
         y[7], y[8] = 0.6 * speed, -0.8 * speed
-        whole.stop_slips(body, y, s)
+        events.stop_slips(body, y, s)
         assert s.slides[0] == (forces.STICKS if sticks else forces.SLIDES)
         left = jacobian(y, point(body, 2)) @ y[7:13]
         kept = 0.0 if sticks else speed
@@ -533,7 +548,7 @@ def test_a_hop_is_closed_unseen_if_what_it_leaves_out_is_small():
         y = leaning(body, 1e-3, rng.uniform(0, 6))
         y[10:13] = rng.normal(0, 0.3, 3)
         mode(s, 2)
-        modes.settle(body, y, s)
+        gaps.settle(body, y, s)
         s.which[:2] = 2, 3
         slope = np.zeros(solid.SIZE)
         forces.rates(body, 0.0, y, slope, s)
@@ -544,7 +559,7 @@ def test_a_hop_is_closed_unseen_if_what_it_leaves_out_is_small():
         gravity = tuple(s.field[:3])
 
         def chatters(leaving, body=body, y=y, gravity=gravity, s=s):
-            return modes.chatters(body, y, rotation(y), gravity, 0, 1, leaving, s)
+            return hops.chatters(body, y, rotation(y), gravity, 0, 1, leaving, s)
 
         if falls <= 0:
             assert not chatters(1e-9)
@@ -552,9 +567,9 @@ def test_a_hop_is_closed_unseen_if_what_it_leaves_out_is_small():
             continue
         # leaving³ g / (0.05 falls² length height) = 1e-6
         most = (1e-6 * 0.05 * falls**2 * length * body.height / G) ** (1 / 3)
-        seen.add("slow" if most < modes.FASTEST_HOP else "fast")
-        assert chatters(0.99 * min(most, modes.FASTEST_HOP))
-        assert not chatters(1.01 * min(most, modes.FASTEST_HOP))
+        seen.add("slow" if most < hops.FASTEST_HOP else "fast")
+        assert chatters(0.99 * min(most, hops.FASTEST_HOP))
+        assert not chatters(1.01 * min(most, hops.FASTEST_HOP))
     assert {"rises", "slow"} <= seen
 
 
@@ -566,11 +581,11 @@ def test_hits_of_walls_are_counted_with_the_whole_impulse_of_each():
     for size in (1.0, 0.5):
         s.impulse[:12] = 0.0
         s.impulse[[2, 5, 8, 11]] = 0.1 * size, 0.2 * size, 0.4 * size, 9.0
-        modes.note_impulses(body, 4, 0b1011, s)
+        impacts.note_impulses(body, 4, 0b1011, s)
         # the contact of the second wall does not push
         assert s.impact[:2] == pytest.approx([0.3, 0.0])
     assert s.hits[:2].tolist() == [2.0, 0.0]
-    modes.note_impulses(body, 4, 0b0101, s)
+    impacts.note_impulses(body, 4, 0b0101, s)
     assert s.hits[:2].tolist() == [3.0, 1.0]
     assert s.impact[:2] == pytest.approx([0.3, 0.2])
 
@@ -581,13 +596,13 @@ def test_momentum_beyond_friction_is_noted_and_counted():
     y[7:10] = 0.3, 0.4, 0.6
     before = (0.0, 0.8, 0.1)
     # shear of 0.5 under 0.5 x 0.5
-    modes.witness(body, y, before, s)
+    impacts.witness(body, y, before, s)
     assert s.beyond == pytest.approx(0.25)
-    assert s.counters[modes.UNSOLVED] == 1
+    assert s.counters[limits.UNSOLVED] == 1
     y[7:10] = 0.0, 0.8 + 15e-4, 0.1 + 15e-4
-    modes.witness(body, y, before, s)
+    impacts.witness(body, y, before, s)
     assert s.beyond == pytest.approx(0.25)
-    assert s.counters[modes.UNSOLVED] == 1
+    assert s.counters[limits.UNSOLVED] == 1
 
 
 def test_against_a_wall_a_body_neither_tips_nor_needs_ground_for_what_the_wall_bears():
@@ -600,22 +615,22 @@ def test_against_a_wall_a_body_neither_tips_nor_needs_ground_for_what_the_wall_b
     body, s = plain(body), case()
     y = upright(body)
     rows = rotation(y)
-    assert modes.lies_against(body, y, rows, 1)
-    assert modes.meets_wall(body, y, rows)
-    assert modes.backed_by_wall(body, y, rows, 1, 2)
-    assert not modes.backed_by_wall(body, y, rows, 2, 3)
-    assert not modes.backed_by_wall(body, y, rows, 3, 0)
+    assert rest.lies_against(body, y, rows, 1)
+    assert points.meets_wall(body, y, rows)
+    assert rest.backed_by_wall(body, y, rows, 1, 2)
+    assert not rest.backed_by_wall(body, y, rows, 2, 3)
+    assert not rest.backed_by_wall(body, y, rows, 3, 0)
     # into the wall nothing is left, away from it all
-    assert modes.borne_by_ground(body, y, rows, (9.0, 1.0, -G)) == (0.0, 1.0, -G)
-    assert modes.borne_by_ground(body, y, rows, (-9.0, 1.0, -G)) == (-9.0, 1.0, -G)
-    margin = modes.rest_margin(body, y, rows, (50.0, 0.0, -G), s)
+    assert rest.borne_by_ground(body, y, rows, (9.0, 1.0, -G)) == (0.0, 1.0, -G)
+    assert rest.borne_by_ground(body, y, rows, (-9.0, 1.0, -G)) == (-9.0, 1.0, -G)
+    margin = rest.rest_margin(body, y, rows, (50.0, 0.0, -G), s)
     assert margin == pytest.approx(min(0.5 * G, 0.3 / 0.5 * G, 0.2 / 0.5 * G))
-    margin = modes.rest_margin(body, y, rows, (-4.0, 0.0, -G), s)
+    margin = rest.rest_margin(body, y, rows, (-4.0, 0.0, -G), s)
     assert margin == pytest.approx(min(0.5 * G - 4.0, 0.2 / 0.5 * G - 4.0))
     y[0] -= 1e-6
-    assert not modes.lies_against(body, y, rows, 1)
-    assert not modes.meets_wall(body, y, rows)
-    assert modes.borne_by_ground(body, y, rows, (9.0, 1.0, -G)) == (9.0, 1.0, -G)
+    assert not rest.lies_against(body, y, rows, 1)
+    assert not points.meets_wall(body, y, rows)
+    assert rest.borne_by_ground(body, y, rows, (9.0, 1.0, -G)) == (9.0, 1.0, -G)
 
 
 def test_what_a_wall_or_the_ground_holds_is_left_out_where_a_mode_comes_again():
@@ -627,12 +642,12 @@ def test_what_a_wall_or_the_ground_holds_is_left_out_where_a_mode_comes_again():
         body.static, body.wall_static[0] = grips
         mode(s, 1, wall)
         s.lam[:2] = [(0.3, 0.0, 1.0), (0.0, -0.3, 1.0)]
-        modes.insist(body, modes.LEAVES_CONE, s)
+        contacts.insist(body, limits.LEAVES_CONE, s)
         assert s.slides[:2].tolist() == [int(worst == k) for k in range(2)]
     # one that slides already is not asked again
     mode(s, 1, wall)
     s.slides[0] = forces.SLIDES
-    modes.insist(body, modes.LEAVES_CONE, s)
+    contacts.insist(body, limits.LEAVES_CONE, s)
     assert s.slides[:2].tolist() == [1, 1]
 
 
@@ -647,13 +662,13 @@ def test_gaps_at_ground_and_wall_are_closed():
     low = int(np.argmin([solid.gap(body, y, rotation(y)[2], i) for i in range(6)]))
     mode(s, low, wall)
     before = y.copy()
-    modes.close_gaps(body, y, rotation(y), s)
+    gaps.close_gaps(body, y, rotation(y), s)
     for i in (low, wall):
         assert solid.gap_of(body, y, rotation(y), i) == pytest.approx(0, abs=1e-9)
     assert np.abs(y - before).max() < 3e-3
     # displaced as by a push at the contact: J⁻¹ (p × n) turns the body
     before, r = y.copy(), attitude(y)
-    modes.shift_at(body, y, rotation(y), wall, 1e-6)
+    gaps.shift_at(body, y, rotation(y), wall, 1e-6)
     away = np.array([*body.away[0], 0.0])
     corner = np.array(body.corner[wall - solid.WALLS])
     turn = np.linalg.solve(body.inertia, np.cross(corner, r.T @ away)) * 1e-6
@@ -679,18 +694,18 @@ def test_of_contacts_outside_of_a_set_the_one_that_approaches_fastest_is_missed(
                 u = load + np.cross(spin, p)
                 if pushed:
                     u = u + np.cross(omega, np.cross(omega, p))
-                leaves = (jacobian(y, p) @ y[7:13])[2] > modes.LEAVES
+                leaves = (jacobian(y, p) @ y[7:13])[2] > limits.LEAVES
                 speeds[i] = 0.0 if pushed and leaves else (r @ u)[2]
             fastest = min(speeds, key=speeds.get)
             expected = fastest if speeds[fastest] < -1e-9 else -1
-            found = modes.missed(body, y, rows, 2, moves, 1e-9, pushed, s)
+            found = problem.missed(body, y, rows, 2, moves, 1e-9, pushed, s)
             assert found == expected
     s.after[:12] = 0.0
     s.after[[2, 5, 8, 11]] = 0.3, 0.2, 0.5, 0.4
-    assert modes.least_needed(4, 0b0100, s) == 3
-    assert modes.least_needed(4, 0b0101, s) == 3
-    assert modes.least_needed(4, 0b1100, s) == 0
-    assert modes.least_needed(4, 0b1111, s) == -1
+    assert problem.least_needed(4, 0b0100, s) == 3
+    assert problem.least_needed(4, 0b0101, s) == 3
+    assert problem.least_needed(4, 0b1100, s) == 0
+    assert problem.least_needed(4, 0b1111, s) == -1
 
 
 def test_contacts_that_part_slowly_stay_closed_and_are_held():
@@ -699,23 +714,23 @@ def test_contacts_that_part_slowly_stay_closed_and_are_held():
     y = leaning(body, 0.2, 0.5)
     s.which[:3] = 1, 2, 4
     # it pushes and sticks; it leaves slowly and slides; it leaves
-    s.after[:9] = 0.0, 0.0, 0.0, 0.6, -0.8, 0.5 * modes.CLOSE, 0.0, 0.0, 0.3
-    modes.keep_slow_contacts(body, y, rotation(y), (0.0, 0.0, -G), 3, 0b001, s)
+    s.after[:9] = 0.0, 0.0, 0.0, 0.6, -0.8, 0.5 * limits.CLOSE, 0.0, 0.0, 0.3
+    hops.keep_slow_contacts(body, y, rotation(y), (0.0, 0.0, -G), 3, 0b001, s)
     # beside the one that pushes it hops, and sticks
     assert s.closed[: s.count].tolist() == [1, 2]
     assert s.slides[:2].tolist() == [forces.STICKS, forces.STICKS]
-    modes.keep_slow_contacts(body, y, rotation(y), (0.0, 0.0, -G), 3, 0b101, s)
+    hops.keep_slow_contacts(body, y, rotation(y), (0.0, 0.0, -G), 3, 0b101, s)
     assert s.closed[: s.count].tolist() == [1, 2, 4]
     assert s.slides[:3].tolist() == [forces.STICKS, forces.SLIDES, forces.STICKS]
     assert s.rests == 0
     # not a hop beside one that slips, nor beside two that push
     s.after[:6] = 0.6, -0.8, 0.0, 0.0, 0.0, 1e-4
     gravity = (0.0, 0.0, -G)
-    assert modes.hopping(body, y, rotation(y), gravity, 2, 0b01, s) == -1
+    assert hops.hopping(body, y, rotation(y), gravity, 2, 0b01, s) == -1
     s.after[:2] = 0.0
-    assert modes.hopping(body, y, rotation(y), gravity, 2, 0b11, s) == -1
+    assert hops.hopping(body, y, rotation(y), gravity, 2, 0b11, s) == -1
     body, y = drum(), leaning(drum(), 0.2, 0.5)
-    assert modes.hopping(body, y, rotation(y), gravity, 2, 0b01, s) == -1
+    assert hops.hopping(body, y, rotation(y), gravity, 2, 0b01, s) == -1
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.6])
@@ -736,11 +751,11 @@ def test_a_corner_leaves_a_smooth_wall_by_its_ratio(ratio):
         before = y.copy()
         gives = row @ inverse_mass(body) @ row
         push = -(1 + ratio) * (row @ before[7:13]) / gives
-        modes.impact(body, y, tuple(s.field[:3]), 0, s)
+        impacts.impact(body, y, tuple(s.field[:3]), 0, s)
         expected = before[7:13] + push * inverse_mass(body) @ row
         assert y[7:13] == pytest.approx(expected, abs=1e-9)
         assert s.impact[0] == pytest.approx(push)
-        assert (s.hits[0], s.counters[modes.IMPACTS]) == (1.0, 1)
+        assert (s.hits[0], s.counters[limits.IMPACTS]) == (1.0, 1)
         assert s.closed[: s.count].tolist() == [solid.WALLS + k]
         assert s.slides[0] == forces.SLIDES
 
@@ -755,38 +770,40 @@ def test_a_rattle_is_ended_that_lasts_no_longer_than_the_ground_is_weak():
         max(body.inertia[0, 0], body.inertia[1, 1]) + body.height**2 + body.furthest**2
     )
     lasts = 0.15 * rights * body.nearest**2 / inertia
-    most = min(lasts**2 / (2 * inertia), whole.RATTLE * body.barrier)
-    assert whole.rattle_ends(body, 0.99 * most, s)
-    assert not whole.rattle_ends(body, 1.01 * most, s)
+    most = min(lasts**2 / (2 * inertia), events.RATTLE * body.barrier)
+    assert events.rattle_ends(body, 0.99 * most, s)
+    assert not events.rattle_ends(body, 1.01 * most, s)
     for place, value in ((0, 1.01 * 0.5 * (G - 0.5)), (0, 50.0), (1, G)):
         s.soon[:2] = 0.8, 0.5
         s.soon[place] = value
-        assert not whole.rattle_ends(body, 1e-15, s)
-    assert not whole.rattle_ends(drum(), 1e-15, s)
+        assert not events.rattle_ends(body, 1e-15, s)
+    assert not events.rattle_ends(drum(), 1e-15, s)
 
 
 def test_energy_noted_as_lost_keeps_what_was_gained_apart():
-    out = np.zeros(whole.OUTCOME)
-    whole.note_loss(0.3, out)
-    whole.note_loss(-0.1, out)
-    assert out[[whole.LOST, whole.GAINED]] == pytest.approx([0.2, 0.1])
+    out = np.zeros(outcome.OUTCOME)
+    outcome.note_loss(0.3, out)
+    outcome.note_loss(-0.1, out)
+    assert out[[outcome.LOST, outcome.GAINED]] == pytest.approx([0.2, 0.1])
 
 
 def test_the_walk_is_that_of_the_point_below_the_centre_of_mass():
     rng = np.random.default_rng(26)
     body = uneven(rng)
-    y, out = state(rng, body), np.zeros(whole.OUTCOME)
-    whole.note_walk(body, y, (0.1, -0.2), out)
+    y, out = state(rng, body), np.zeros(outcome.OUTCOME)
+    outcome.note_walk(body, y, (0.1, -0.2), out)
     foot = y[:3] + attitude(y) @ [0, 0, -body.height]
-    assert out[[whole.WALK_X, whole.WALK_Y]] == pytest.approx(foot[:2] - (0.1, -0.2))
+    assert out[[outcome.WALK_X, outcome.WALK_Y]] == pytest.approx(
+        foot[:2] - (0.1, -0.2)
+    )
 
 
 def test_a_history_keeps_state_turn_and_what_is_closed():
     rng = np.random.default_rng(27)
     body, s = uneven(rng), case()
-    y, out, history = state(rng, body), np.zeros(whole.OUTCOME), np.zeros((2, 17))
-    out[whole.TURN] = 7.0
-    before = whole.heading(y)
+    y, out, history = state(rng, body), np.zeros(outcome.OUTCOME), np.zeros((2, 17))
+    out[outcome.TURN] = 7.0
+    before = outcome.heading(y)
     y = y.copy()
     w, z = y[3], y[6]
     # a turn about the vertical by 0.4
@@ -796,13 +813,13 @@ def test_a_history_keeps_state_turn_and_what_is_closed():
     )
     y[3:7] = q
     mode(s, 3, 5)
-    whole.record(history, 1, y, before, out, s)
+    outcome.record(history, 1, y, before, out, s)
     assert history[1, :13] == pytest.approx(y[:13])
     assert history[1, 13:] == pytest.approx([7.4, 2, 3, 5])
     s.rests = 1
-    whole.record(history, 0, y, before, out, s)
-    assert history[0, 14] == whole.RESTS
-    whole.record(history, 2, y, before, out, s)
+    outcome.record(history, 0, y, before, out, s)
+    assert history[0, 14] == outcome.RESTS
+    outcome.record(history, 2, y, before, out, s)
 
 
 def test_a_small_wobble_lies_down_and_what_it_loses_is_told():
@@ -810,14 +827,14 @@ def test_a_small_wobble_lies_down_and_what_it_loses_is_told():
     y = leaning(body, 1e-5, 0.4)
     mode(s, body.count)
     y[10:13] = 1e-4, 2e-4, 0.0
-    modes.settle(body, y, s)
+    gaps.settle(body, y, s)
     had = solid.energy(body, y, G)
     # of the motion that tilts it: (A ω² + v²)/2 and the lift of its rim
     part = 0.5 * body.inertia[0, 0] * (1e-8 + 4e-8) + 0.5 * y[9] ** 2
     part += G * body.rim * math.sin(1e-5)
     for small, lies in ((0.99 * part, False), (1.01 * max(part, had), True)):
-        cut = small / (whole.LEAST_WOBBLE * body.barrier)
-        lost = whole.small_rim(body, y, 0.0, cut, s)
+        cut = small / (rim.LEAST_WOBBLE * body.barrier)
+        lost = rim.small_rim(body, y, 0.0, cut, s)
         assert lost == pytest.approx(had if lies else 0.0, rel=1e-9)
         assert s.rests == lies
     assert y[7:13] == pytest.approx(0, abs=1e-15)
@@ -835,10 +852,10 @@ def test_a_small_wobble_that_slides_lies_down_and_slides_on(way):
     s.direction[0] = speed / 0.5
     y[7:9], y[9:12] = speed, (1e-6, 2e-6, 3e-6)
     had = solid.energy(body, y, G)
-    lost = whole.small_rim(body, y, 0.0, 1e-3, s)
+    lost = rim.small_rim(body, y, 0.0, 1e-3, s)
     assert y[7:12] == pytest.approx((*speed, 0, 0, 0), abs=1e-9)
     assert lost == pytest.approx(had - solid.energy(body, y, G)) and lost > 0
-    assert y[2] == body.height and modes.lies_flat(body, y, rotation(y))
+    assert y[2] == body.height and points.lies_flat(body, y, rotation(y))
     assert s.jammed == 0 and s.rests == 0 and s.count > 0
     assert s.slides[: s.count].tolist() == [forces.SLIDES] * s.count
 
@@ -851,9 +868,9 @@ def test_a_wobble_that_is_given_up_lies_flat_and_what_it_had_is_told():
     had = solid.energy(body, y, G)
     lost = whole.give_up(body, 0.0, y, s)
     assert y[7:13] == pytest.approx(0, abs=1e-12)
-    assert modes.lies_flat(body, y, rotation(y))
+    assert points.lies_flat(body, y, rotation(y))
     assert lost == pytest.approx(had, rel=1e-9)
-    assert s.counters[modes.UNSOLVED] == 1 and s.rests == 1
+    assert s.counters[limits.UNSOLVED] == 1 and s.rests == 1
 
 
 def box_at_wall(friction):
@@ -878,9 +895,9 @@ def test_a_box_that_leans_against_a_smooth_wall_is_held_by_the_moment_of_its_wei
     """N h = m g a about its foot, as much along the ground, and the whole weight under it."""
     body, y, low, high = box_at_wall(0.0)
     s, rows = case(), rotation(y)
-    n, _ = modes.pick_closed(body, y, rows, modes.AT_REST, s)
+    n, _ = modes.pick_closed(body, y, rows, limits.AT_REST, s)
     assert n == 4
-    found, _ = modes.solve_forces(body, y, rows, (0.0, 0.0, -G), n, modes.AT_REST, s)
+    found, _ = modes.solve_forces(body, y, rows, (0.0, 0.0, -G), n, limits.AT_REST, s)
     assert found >= 0
     at_wall, at_ground = np.zeros(3), np.zeros(3)
     for k in range(n):
@@ -902,7 +919,7 @@ def test_a_face_that_tips_as_it_slides_keeps_its_velocities_and_gains_nothing():
         before, had = y.copy(), solid.balance(body, y, G)
         s.count, s.slides[:2] = 2, sliding
         s.closed[:2] = 0, 8
-        whole.rim_instead_of_feet(body, y, tuple(s.field[:3]), s)
+        rim.rim_instead_of_feet(body, y, tuple(s.field[:3]), s)
         assert s.closed[: s.count].tolist() == [body.count]
         assert s.slides[0] == sliding
         assert solid.balance(body, y, G) <= had + 1e-12
@@ -920,7 +937,7 @@ def test_a_face_that_tips_as_it_slides_keeps_its_velocities_and_gains_nothing():
     s.count = 3
     s.closed[:3] = 0, 8, 16
     held = y.copy()
-    whole.rim_instead_of_feet(body, held, tuple(s.field[:3]), s)
+    rim.rim_instead_of_feet(body, held, tuple(s.field[:3]), s)
     assert (s.count, (held == y).all()) == (3, True)
 
 
@@ -932,15 +949,15 @@ def test_a_point_beside_an_edge_lands_where_the_turn_about_the_edge_takes_it():
         towards = math.atan2(*CORNERS[[3, 4]].mean(axis=0)[::-1])
         y = leaning(body, 0.02, towards)
         mode(s, 3, 4)
-        modes.close_gaps(body, y, rotation(y), s)
+        gaps.close_gaps(body, y, rotation(y), s)
         e = point(body, 4) - point(body, 3)
         e /= np.linalg.norm(e)
         # back to the ground, a little past it at the end of the step
         y[10:13] = (
             -3.0 * e if np.cross(e, point(body, 0) - point(body, 3))[2] > 0 else 3 * e
         )
-        modes.anchor_all(body, y, s)
-        modes.settle(body, y, s)
+        contacts.anchor_all(body, y, s)
+        gaps.settle(body, y, s)
         h = 0.01
         step.attempt(body, 0.0, h, y, s)
 
@@ -967,8 +984,8 @@ def test_the_error_of_a_step_about_a_contact_is_the_difference_of_the_pair():
             s, y = shaken(rng), leaning(body, 0.3, rng.uniform(0, 6))
             mode(s, body.count if name == "rim" else 2)
             y[10:13] = rng.normal(0, 2, 3)
-            modes.anchor_all(body, y, s)
-            modes.settle(body, y, s)
+            contacts.anchor_all(body, y, s)
+            gaps.settle(body, y, s)
 
             def motion(time, x, body=body, s=s):
                 rate, along, _ = pivot.turning_rates(body, time, tuple(x[:7]), s)
@@ -1018,18 +1035,18 @@ def test_both_ways_of_stopping_an_edge_share_its_impulse_alike():
         y = leaning(body, 0.1, 0.0)
         mode(s, 1, 2)
         for _ in range(4):
-            modes.close_gaps(body, y, rotation(y), s)
+            gaps.close_gaps(body, y, rotation(y), s)
         y[7:13] = rng.normal(0, 0.5, 6)
         y[9] = -1.0
         s.which[:2] = 1, 2
         rows = rotation(y)
         momentum = stick.fill_velocities(body, y, rows, 2, s)
-        modes.note_slips(body, 2, s)
+        problem.note_slips(body, 2, s)
         if stick.stick_alone_or_by_two(body, rows, 2, 0, momentum, s)[0] != 3:
             continue
         expected = np.array(s.impulse[:6])
         forces.fill_delassus(body, rows, s.which, 2, s.delassus)
-        modes.fill_edges(body, y, rows, s.which, 2, s)
+        problem.fill_edges(body, y, rows, s.which, 2, s)
         assert cones.solve_cones(s, 2, 0)[0] == 3
         assert s.impulse[:6] == pytest.approx(expected, abs=1e-8)
         both += 1
@@ -1054,8 +1071,8 @@ def test_a_body_slides_on_its_face_while_the_centre_of_pressure_is_inside():
         y[7:9] = math.cos(way), math.sin(way)
         ahead = body.kinetic * body.height * y[7:9]
         gravity = (0.0, 0.0, -G)
-        stays = modes.carried_flat(body, 0.0, y, rotation(y), gravity, s)
-        assert modes.pressure_centre(body, s) == pytest.approx(ahead, abs=1e-9)
+        stays = face.carried_flat(body, 0.0, y, rotation(y), gravity, s)
+        assert face.pressure_centre(body, s) == pytest.approx(ahead, abs=1e-9)
         along = np.roll(CORNERS, -1, axis=0) - CORNERS
         beside = ahead - CORNERS
         inside = (along[:, 0] * beside[:, 1] - along[:, 1] * beside[:, 0] > 0).all()
@@ -1080,16 +1097,16 @@ def test_a_box_that_is_shaken_along_its_side_rocks_as_housner_says(at_rest):
     motion = np.zeros((at_rest + pulse.size + 6, 3))
     motion[at_rest : at_rest + pulse.size, 0] = pulse
     peaks, history = np.zeros((len(motion), 4)), np.full((len(motion) + 9, 17), np.nan)
-    whole.fill_peaks(motion, peaks)
-    s, y, out = case(), upright(body), np.zeros(whole.OUTCOME)
+    ground.fill_peaks(motion, peaks)
+    s, y, out = case(), upright(body), np.zeros(outcome.OUTCOME)
     whole.integrate(body, motion, peaks, 1.0, dt, G, 5, 1e-8, 1e-6, y, history, out, s)
     radius, alpha = math.hypot(half, height), math.atan2(half, height)
     inertia = tensor[1, 1] + radius**2
     time = dt * np.arange(len(motion) + 1)
-    ground = np.append(motion[:, 0], 0.0)
+    pushed = np.append(motion[:, 0], 0.0)
 
     lifts = next(
-        t for t in np.linspace(0, 9, 90001) if np.interp(t, time, ground) >= G / 3
+        t for t in np.linspace(0, 9, 90001) if np.interp(t, time, pushed) >= G / 3
     )
     first = int(np.searchsorted(time, lifts, side="right"))
     # Housner's ratio of a solid box
@@ -1099,7 +1116,7 @@ def test_a_box_that_is_shaken_along_its_side_rocks_as_housner_says(at_rest):
 
         def housner(t, x, side=side):
             """About the edge that it stands on, by the ground's acceleration towards that."""
-            off, a = alpha - x[0], side * np.interp(t, time, ground)
+            off, a = alpha - x[0], side * np.interp(t, time, pushed)
             turn = radius * (a * math.cos(off) - G * math.sin(off)) / inertia
             return x[1], turn
 
@@ -1119,9 +1136,9 @@ def test_a_box_that_is_shaken_along_its_side_rocks_as_housner_says(at_rest):
     tilt = np.arctan2(up[:, 0], up[:, 2])
     assert tilt[:first] == pytest.approx(0, abs=1e-15)
     if at_rest:
-        assert (history[:first, 14] == whole.RESTS).all()
+        assert (history[:first, 14] == outcome.RESTS).all()
     assert tilt == pytest.approx(known * np.sign(tilt[first] * known[first]), abs=1e-6)
     assert {1.0, -1.0} <= set(np.sign(known))
     assert np.isfinite(history[:, 0]).sum() >= len(motion)
-    assert out[whole.STEPS] >= len(motion) - first
-    assert out[whole.PEAK_TILT] == pytest.approx(np.abs(known).max(), rel=0.02)
+    assert out[outcome.STEPS] >= len(motion) - first
+    assert out[outcome.PEAK_TILT] == pytest.approx(np.abs(known).max(), rel=0.02)

@@ -10,8 +10,8 @@ from rockfrag import Block, GroundMotion, Motion, overturns
 from rockfrag.base.errors import InputError
 from rockfrag.engines.contract import Cases, Request
 from rockfrag.engines.planar.engine import run as run_planar
-from rockfrag.engines.spatial import _integrate as kernel
-from rockfrag.engines.spatial import _modes as modes
+from rockfrag.engines.spatial import _limits as limits
+from rockfrag.engines.spatial import _outcome as outcome
 from rockfrag.engines.spatial.body import kernel_body, standing
 from rockfrag.engines.spatial.engine import run_case, run_scales
 from rockfrag.simulation import holding
@@ -168,7 +168,7 @@ def against_wall(gap, rate, **about):
     # one interval of the ground holds the impact
     ground, start = np.zeros((2, 3)), turning(rate)
     found = run_scales(body, ground, 1e-3, np.array([1.0]), start=start)
-    return found.outs[0, kernel.HELD : kernel.HELD + 4], found
+    return found.outs[0, outcome.HELD : outcome.HELD + 4], found
 
 
 def test_a_wall_gives_the_impulse_of_a_free_body():
@@ -230,10 +230,10 @@ def test_a_shelf_leans_where_its_foot_holds_and_slides_down_where_it_does_not():
         c, s = math.cos(angle), math.sin(angle)
         lever = np.array([c * arm[0] + s * arm[2], 0.0, -s * arm[0] + c * arm[2]])
         y[:3] = np.array([0.15, 0.0, 0.0]) - lever
-        outcome, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
+        told, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
         moved = np.abs(history[-1, :3] - history[0, :3]).max()
         assert (moved < 1e-6) == (part > 1), (part, moved)
-        assert outcome.overturned == (part < 1)
+        assert told.overturned == (part < 1)
 
 
 @pytest.mark.parametrize(
@@ -281,8 +281,8 @@ def test_beside_a_wall_an_analysis_takes_few_steps(seeds):
     for seed in seeds:
         motion = synthetic_motion(np.random.default_rng(seed), 2)
         found = run_scales(body, motion, DT, np.array([0.8]))
-        assert found.outs[0, kernel.STEPS] < 6 * len(motion), seed
-        assert found.outs[0, kernel.GAINED] < 1e-8
+        assert found.outs[0, outcome.STEPS] < 6 * len(motion), seed
+        assert found.outs[0, outcome.GAINED] < 1e-8
 
 
 def test_a_state_that_is_no_number_counts_as_a_fall_and_as_a_paradox():
@@ -290,11 +290,11 @@ def test_a_state_that_is_no_number_counts_as_a_fall_and_as_a_paradox():
     body = kernel_body(Block(0.3, 0.7, 60.0, depth=0.3).system())
     rocking = np.tile([5.0, 1.0, 0.0], (12, 1))
     stands = run_scales(body, rocking, DT, np.ones(1))
-    assert stands.outs[0, kernel.FELL] == 0 < stands.outs[0, kernel.PEAK_RATIO]
+    assert stands.outs[0, outcome.FELL] == 0 < stands.outs[0, outcome.PEAK_RATIO]
     rocking[-1] = np.nan
     lost = run_scales(body, rocking, DT, np.ones(1))
-    assert lost.outs[0, kernel.FELL] == 1
-    assert lost.counts[0, modes.UNSOLVED] > stands.counts[0, modes.UNSOLVED]
+    assert lost.outs[0, outcome.FELL] == 1
+    assert lost.counts[0, limits.UNSOLVED] > stands.counts[0, limits.UNSOLVED]
 
 
 def draw_beside_wall(rng):

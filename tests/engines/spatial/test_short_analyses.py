@@ -18,8 +18,10 @@ from .plain_space import (
     System,
     attitude,
     case,
+    ground,
     kernel_body,
-    modes,
+    limits,
+    outcome,
     plain,
     solid,
     whole,
@@ -70,10 +72,10 @@ def shaken(kind, mirrored=False, turned=0.0):
     motion[:, 0] *= -1.0 if mirrored else 1.0
     c, s = math.cos(turned), math.sin(turned)
     motion[:, :2] = motion[:, :2] @ np.array([[c, s], [-s, c]])
-    y, memory, out = np.zeros(solid.SIZE), case(), np.zeros(whole.OUTCOME)
+    y, memory, out = np.zeros(solid.SIZE), case(), np.zeros(outcome.OUTCOME)
     y[2], y[3], y[6] = body.height, math.cos(turned / 2), math.sin(turned / 2)
     peaks, history = np.zeros((count, 4)), np.full((count, 17), np.nan)
-    whole.fill_peaks(motion, peaks)
+    ground.fill_peaks(motion, peaks)
     whole.integrate(
         body, motion, peaks, 1.0, DT, G, 0, 1e-9, 1e-6, y, history, out, memory
     )
@@ -87,9 +89,9 @@ def test_turned_or_seen_in_a_mirror_a_case_is_the_same_and_its_energy_balances(k
     assert known.sum() == KINDS[kind]
     axes = np.array([attitude(row)[:, 2] for row in history[known]])
     assert np.hypot(*axes[:, :2].T).max() > 1e-2
-    assert out[whole.ENERGY_BALANCE] == pytest.approx(0, abs=1e-7)
-    assert out[whole.GAINED] < 1e-7
-    assert out[whole.LOST] > 0
+    assert out[outcome.ENERGY_BALANCE] == pytest.approx(0, abs=1e-7)
+    assert out[outcome.GAINED] < 1e-7
+    assert out[outcome.LOST] > 0
     place, spin = history[known, :3], history[known, 10:13]
     turned, then, _, _ = shaken(kind, turned=0.7)
     c, s = math.cos(0.7), math.sin(0.7)
@@ -108,16 +110,16 @@ def test_turned_or_seen_in_a_mirror_a_case_is_the_same_and_its_energy_balances(k
     assert seen[known, 13] == pytest.approx(-history[known, 13], **near)
     for other in (then, there):
         alike = [
-            whole.PEAK_RATIO,
-            whole.PEAK_TILT,
-            whole.LOST,
-            *range(whole.HELD, whole.OUTCOME),
+            outcome.PEAK_RATIO,
+            outcome.PEAK_TILT,
+            outcome.LOST,
+            *range(outcome.HELD, outcome.OUTCOME),
         ]
         assert other[alike] == pytest.approx(
             out[alike], rel=1e-3, abs=1e-5, nan_ok=True
         )
     if kind == "bonded":
-        tension, breaks = out[whole.HELD + 4 * solid.BOND + 2 :][:2]
+        tension, breaks = out[outcome.HELD + 4 * solid.BOND + 2 :][:2]
         assert tension == pytest.approx(0.5 * body.tension)
         assert 0 < breaks < 0.1
-    assert memory.counters[modes.UNSOLVED] == 0
+    assert memory.counters[limits.UNSOLVED] == 0

@@ -20,16 +20,24 @@ from .plain_space import (
     attitude,
     case,
     cone,
+    contacts,
     engine,
+    events,
+    face,
     forces,
+    gaps,
     inverse_mass,
     jacobian,
     kernel_body,
     leaning,
+    limits,
     mode,
-    modes,
+    outcome,
     plain,
     point,
+    points,
+    problem,
+    rest,
     rotation,
     set_down,
     solid,
@@ -97,7 +105,7 @@ def test_an_edge_of_contacts_has_the_direction_from_one_to_the_other():
     body, s = uneven(rng), case()
     y = state(rng, body)
     which = [5, 0, 3]
-    modes.fill_edges(body, y, rotation(y), which, 3, s)
+    problem.fill_edges(body, y, rotation(y), which, 3, s)
     for i, first in enumerate(which):
         for j, second in enumerate(which):
             way = attitude(y) @ (point(body, second) - point(body, first))
@@ -113,19 +121,19 @@ def test_of_six_points_that_touch_the_four_that_approach_fastest_are_looked_at()
         y = state(rng, body)
         set_down(y, body)
         rows = rotation(y)
-        assert modes.touching(body, y, rows, s) == 4
+        assert points.touching(body, y, rows, s) == 4
         speeds = [(jacobian(y, point(body, i)) @ y[7:13])[2] for i in range(6)]
         assert sorted(s.which) == sorted(np.argsort(speeds)[:4])
-        assert modes.count_touching(body, y, rows) == 6
+        assert points.count_touching(body, y, rows) == 6
         y[2] += 1e-3
-        assert modes.touching(body, y, rows, s) == 0
+        assert points.touching(body, y, rows, s) == 0
 
 
 def test_slips_before_an_impact_have_their_direction():
     body, s = uneven(np.random.default_rng(6)), case()
     s.which[:2] = 0, 1
     s.free[:6] = 3.0, -4.0, -1.0, 1e-6, 1e-6, -1.0
-    modes.note_slips(body, 2, s)
+    problem.note_slips(body, 2, s)
     assert (s.slid[0], s.slid[1]) == (1, 0)
     assert s.came[0] == pytest.approx([0.6, -0.8])
     assert (s.friction[0], s.holds[0], s.given[0]) == (0.3, 0.5, 0)
@@ -142,12 +150,12 @@ def test_the_margin_of_pressure_is_its_distance_from_the_nearest_edge():
         pressed += (1 - pressed.sum()) / 4
         s.lam[:, 2] = pressed
         x = pressed @ corners[[0, 2, 3, 5]]
-        assert modes.pressure_centre(body, s) == pytest.approx(x, abs=1e-12)
+        assert face.pressure_centre(body, s) == pytest.approx(x, abs=1e-12)
         along = np.roll(corners, -1, axis=0) - corners
         inward = np.stack([-along[:, 1], along[:, 0]], axis=1)
         inward /= np.linalg.norm(inward, axis=1)[:, None]
         expected = ((x - corners) * inward).sum(axis=1).min()
-        found = modes.pressure_margin(body, s)
+        found = face.pressure_margin(body, s)
         assert found == pytest.approx(expected, abs=1e-12)
         signs.add(found > 0)
     assert signs == {True, False}
@@ -167,7 +175,7 @@ def test_rest_is_kept_while_the_line_of_thrust_meets_the_base():
         along = np.roll(corners, -1, axis=0) - corners
         side = along[:, 0] * (q - corners)[:, 1] - along[:, 1] * (q - corners)[:, 0]
         stands = (side > 0).all() and np.hypot(*pull[:2]) < -0.5 * pull[2]
-        assert (modes.rest_margin(body, y, rotation(y), pull, s) > 0) == stands
+        assert (rest.rest_margin(body, y, rotation(y), pull, s) > 0) == stands
         kept.add(bool(stands))
     assert kept == {True, False}
 
@@ -182,8 +190,8 @@ def test_what_sticks_has_the_accelerations_of_lagranges_equations(closed):
     y = state(rng, body)
     mode(s, *closed)
     if closed:
-        modes.anchor_all(body, y, s)
-        modes.settle(body, y, s)
+        contacts.anchor_all(body, y, s)
+        gaps.settle(body, y, s)
     r, omega, tau = attitude(y), y[10:13], 0.03
     pull = s.field[:3] + tau * s.field[3:6]
     rows = np.vstack([np.zeros((0, 6))] + [jacobian(y, point(body, i)) for i in closed])
@@ -221,8 +229,8 @@ def test_what_slides_is_rubbed_against_its_slip():
         y = state(rng, body)
         y[7:10] *= 4
         mode(s, *closed, slides=forces.SLIDES)
-        modes.close_gaps(body, y, rotation(y), s)
-        modes.hold(body, y, rotation(y), s)
+        gaps.close_gaps(body, y, rotation(y), s)
+        contacts.hold(body, y, rotation(y), s)
         rates = np.zeros(solid.SIZE)
         forces.rates(body, 0.0, y, rates, s)
         lost = 0.0
@@ -251,7 +259,7 @@ def test_an_impact_that_sticks_stops_its_points_by_the_least_momentum(which):
     rows = rotation(y)
     before = y.copy()
     mode(s, *which)
-    modes.hold(body, y, rows, s)
+    contacts.hold(body, y, rows, s)
     rows_of = np.vstack([jacobian(y, point(body, i)) for i in which])
     compliance = rows_of @ inverse_mass(body) @ rows_of.T
     push = np.linalg.lstsq(compliance, -rows_of @ before[7:13], rcond=1e-10)[0]
@@ -304,7 +312,7 @@ def test_a_wall_is_met_by_the_nearest_corner_at_the_speed_towards_it():
         for i in [*range(6), *(solid.WALLS + k for k in range(body.corners))]
     ]
     assert least == pytest.approx(min(gaps), abs=1e-9)
-    assert what == modes.LANDS
+    assert what == limits.LANDS
 
 
 def test_a_tie_pulls_from_its_knot_to_its_anchor_by_stretch_and_rate():
@@ -377,7 +385,7 @@ def test_a_body_slides_if_any_of_its_contacts_does():
     for slides in ((), (0,), (1,), (0, 1), (1, 0), (0, 0, 1)):
         mode(s, *range(len(slides)))
         s.slides[: len(slides)] = slides
-        assert whole.slides_any(s) == any(slides)
+        assert events.slides_any(s) == any(slides)
 
 
 def test_what_holds_a_body_is_followed_as_long_as_it_moves():
@@ -399,12 +407,12 @@ def test_a_body_is_beyond_its_balance_where_its_centre_leaves_the_base():
         critical = math.atan2((corners @ u).max(), body.height)
         for part in (0.99, 1.01):
             y = leaning(body, part * critical, towards)
-            assert whole.is_beyond(body, y) == (part > 1)
-            assert whole.stands_within_balance(body, rotation(y)) == (part < 1)
-            out = np.zeros(whole.OUTCOME)
-            whole.note_peaks(body, y, attitude(y), out)
-            assert out[whole.PEAK_RATIO] == pytest.approx(part)
-            assert out[whole.PEAK_TILT] == pytest.approx(part * critical)
+            assert outcome.is_beyond(body, y) == (part > 1)
+            assert outcome.stands_within_balance(body, rotation(y)) == (part < 1)
+            out = np.zeros(outcome.OUTCOME)
+            outcome.note_peaks(body, y, attitude(y), out)
+            assert out[outcome.PEAK_RATIO] == pytest.approx(part)
+            assert out[outcome.PEAK_TILT] == pytest.approx(part * critical)
 
 
 def test_a_fall_is_certain_only_beyond_all_that_the_ground_may_still_do():
@@ -417,15 +425,15 @@ def test_a_fall_is_certain_only_beyond_all_that_the_ground_may_still_do():
         y = leaning(body, balance + steepest + part, 0.0)
         y[11] = 0.1
         peaks, rows = np.array([2.0, 1.0]), attitude(y)
-        assert whole.fall_is_certain(body, y, rows, peaks, 1.0, G) == falls
-        assert not whole.fall_is_certain(body, y, rows, peaks, 1.2, G)
+        assert outcome.fall_is_certain(body, y, rows, peaks, 1.0, G) == falls
+        assert not outcome.fall_is_certain(body, y, rows, peaks, 1.2, G)
         y[11] = -0.1
-        assert not whole.fall_is_certain(body, y, rows, peaks, 1.0, G)
+        assert not outcome.fall_is_certain(body, y, rows, peaks, 1.0, G)
 
 
 def test_a_fall_is_over_contacts_with_the_ground():
     """A corner that touches a wall is closed too, and is no vertex of the base."""
-    y, s, out = np.zeros(solid.SIZE), case(), np.zeros(whole.OUTCOME)
+    y, s, out = np.zeros(solid.SIZE), case(), np.zeros(outcome.OUTCOME)
     y[3] = 1.0
     wall = solid.WALLS + 1
     for closed, expected in (
@@ -436,18 +444,18 @@ def test_a_fall_is_over_contacts_with_the_ground():
         ((1, wall, 2), (1, 2)),
     ):
         mode(s, *closed)
-        whole.note_fall(y, s, 1.0, out)
-        assert (out[whole.FALL_FIRST], out[whole.FALL_SECOND]) == expected
+        outcome.note_fall(y, s, 1.0, out)
+        assert (out[outcome.FALL_FIRST], out[outcome.FALL_SECOND]) == expected
 
 
 def test_turns_about_the_vertical_are_counted_whole():
-    y, out, turn = np.zeros(solid.SIZE), np.zeros(whole.OUTCOME), 0.0
+    y, out, turn = np.zeros(solid.SIZE), np.zeros(outcome.OUTCOME), 0.0
     before = (1.0, 0.0)
     for turn in np.linspace(0, 9.0, 50):
         y[3], y[6] = math.cos(turn / 2), math.sin(turn / 2)
-        before = whole.note_turn(y, before, out)
-        since = whole.turn_since(before, y)
-        assert out[whole.TURN] + since == pytest.approx(turn)
+        before = outcome.note_turn(y, before, out)
+        since = outcome.turn_since(before, y)
+        assert out[outcome.TURN] + since == pytest.approx(turn)
         assert abs(since) < 1.2
 
 
@@ -487,8 +495,8 @@ def test_a_round_body_touches_at_its_lowest_point_which_goes_round_as_the_axis_d
 )
 def test_a_body_falls_over_what_is_on_the_ground_whatever_wall_it_touches(closed, said):
     """Corners at walls have numbers from 1000 on: a body fell over "vertex 1008"."""
-    body, s, out = uneven(np.random.default_rng(3)), case(), np.zeros(whole.OUTCOME)
+    body, s, out = uneven(np.random.default_rng(3)), case(), np.zeros(outcome.OUTCOME)
     s.count = len(closed)
     s.closed[: s.count] = closed
-    whole.note_fall(state(np.random.default_rng(4), body), s, 1.0, out)
+    outcome.note_fall(state(np.random.default_rng(4), body), s, 1.0, out)
     assert engine._named(body, out) == said

@@ -16,7 +16,7 @@ from .plain_space import (
     forces,
     inverse_mass,
     jacobian,
-    modes,
+    limits,
     point,
     rotation,
     shaken,
@@ -137,7 +137,7 @@ def test_after_a_step_what_is_near_obeys_the_conditions_of_contact():
             wall = i >= solid.WALLS
             static = 0.4 if wall else body.static
             kinetic = 0.2 if wall else body.kinetic
-            mu = kinetic if np.hypot(*slip[:2]) > modes.AT_REST else static
+            mu = kinetic if np.hypot(*slip[:2]) > limits.AT_REST else static
             assert s.rubs[k] == pytest.approx(mu)
             assert np.hypot(*shear) <= mu * normal * (1 + 1e-12)
             if normal > 1e-4 and np.hypot(*u[:2]) > 1e-4:

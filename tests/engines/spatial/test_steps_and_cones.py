@@ -18,15 +18,21 @@ from .plain_space import (
     System,
     attitude,
     case,
+    contacts,
     forces,
+    gaps,
     inverse_mass,
     jacobian,
     kernel_body,
     leaning,
+    limits,
     mode,
     modes,
     plain,
     point,
+    points,
+    problem,
+    rest,
     rotation,
     set_down,
     shaken,
@@ -61,10 +67,10 @@ def in_mode(rng, name):
     mode(s, *closed)
     s.slides[: len(closed)] = slides
     if closed:
-        modes.close_gaps(body, y, rotation(y), s)
-        modes.hold(body, y, rotation(y), s)
-        modes.anchor_all(body, y, s)
-        modes.settle(body, y, s)
+        gaps.close_gaps(body, y, rotation(y), s)
+        contacts.hold(body, y, rotation(y), s)
+        contacts.anchor_all(body, y, s)
+        gaps.settle(body, y, s)
     return body, y, s
 
 
@@ -153,7 +159,7 @@ def struck(rng, touch, mu):
     s.which[: len(touch)] = touch
     rows = rotation(y)
     momentum = stick.fill_velocities(body, y, rows, len(touch), s)
-    modes.note_slips(body, len(touch), s)
+    problem.note_slips(body, len(touch), s)
     return body, y, rows, momentum, s
 
 
@@ -163,7 +169,7 @@ def test_impulses_obey_the_conditions_of_contact_with_coulombs_cone(touch):
     for _ in range((30, 30, 12, 4)[n - 1]):
         mu = rng.uniform(0.05, 1.2)
         body, y, rows, momentum, s = struck(rng, touch, mu)
-        found, solutions = modes.solve(body, y, rows, n, 0, momentum, s)
+        found, solutions = problem.solve(body, y, rows, n, 0, momentum, s)
         if found < 0:
             missing += 1
             continue
@@ -206,7 +212,7 @@ def test_of_outcomes_of_one_size_the_one_with_the_least_energy_is_taken():
     rng, several = np.random.default_rng(56), 0
     for _ in range(5):
         body, y, rows, momentum, s = struck(rng, (0, 1, 3, 4), 20.0)
-        found, solutions = modes.solve(body, y, rows, 4, 0, momentum, s)
+        found, solutions = problem.solve(body, y, rows, 4, 0, momentum, s)
         assert found >= 0
         if solutions < 2:
             continue
@@ -239,13 +245,13 @@ def test_static_friction_holds_what_has_not_slipped_and_kinetic_brakes_what_has(
         stuck = np.linalg.solve(w, -free)
         ratio = np.hypot(*stuck[:2]) / stuck[2]
         body.static, body.kinetic = 1.1 * ratio, 0.9 * ratio
-        modes.note_slips(body, 1, s)
+        problem.note_slips(body, 1, s)
         # what has not slipped sticks
         s.slid[0] = 0
-        modes.solve(body, y, rows, 1, 0, momentum, s)
+        problem.solve(body, y, rows, 1, 0, momentum, s)
         assert s.impulse[:3] == pytest.approx(stuck)
         s.slid[0] = 1
-        modes.solve(body, y, rows, 1, 0, momentum, s)
+        problem.solve(body, y, rows, 1, 0, momentum, s)
         shear, normal = np.hypot(s.impulse[0], s.impulse[1]), s.impulse[2]
         if stuck[:2] @ free[:2] < 0:
             assert shear == pytest.approx(body.kinetic * normal)
@@ -262,7 +268,7 @@ def test_a_contact_that_slips_a_given_way_is_rubbed_against_it():
             # it parts
             continue
         s.given[0], s.way[0] = 1, (0.6, -0.8)
-        found, _ = modes.solve(body, y, rows, 1, 0, momentum, s)
+        found, _ = problem.solve(body, y, rows, 1, 0, momentum, s)
         normal = s.impulse[2]
         assert found == 1
         assert s.impulse[:2] == pytest.approx((-0.18 * normal, 0.24 * normal))
@@ -291,7 +297,7 @@ def test_where_two_sets_of_contacts_would_do_this_is_counted(monkeypatch):
         solved = (-1 if solutions == 0 else 0, solutions)
         monkeypatch.setattr(modes, "solve_forces", lambda *_, solved=solved: solved)
         modes.choose_mode(body, 0.0, y, s)
-        assert s.counters[modes.AMBIGUOUS] == (solutions > 1)
+        assert s.counters[limits.AMBIGUOUS] == (solutions > 1)
 
 
 def test_a_rim_that_stops_at_its_lowest_point_stops_there():
@@ -305,7 +311,7 @@ def test_a_rim_that_stops_at_its_lowest_point_stops_there():
     rows, before = rotation(y), y[7:13].copy()
     lowest = np.array(solid.arm(body, rows[2], body.count))
     mode(s, body.count)
-    modes.hold(body, y, rows, s)
+    contacts.hold(body, y, rows, s)
     j = jacobian(y, lowest)
     push = np.linalg.solve(j @ inverse_mass(body) @ j.T, -j @ before)
     expected = before + inverse_mass(body) @ j.T @ push
@@ -319,14 +325,14 @@ def test_a_mode_is_read_off_the_impulses_that_were_found():
     s.which[:3], s.grip[:3] = (5, 2, 4), 0.5
     s.impulse[:9] = 0.0, 0.0, 0.0, -0.3, 0.4, 1.0, 0.1, 0.0, 1.0
     s.after[:9] = 0.0, 0.0, 2.0, 0.6, -0.8, 0.0, 0.0, 0.0, 0.0
-    modes.write_mode(body, y, rotation(y), 3, 0b110, s)
+    contacts.write_mode(body, y, rotation(y), 3, 0b110, s)
     assert s.count == 2
     assert s.closed[:2].tolist() == [2, 4]
     assert s.slides[:2].tolist() == [forces.SLIDES, forces.STICKS]
     assert s.direction[0] == pytest.approx((0.6, -0.8))
     corners = np.array([point(body, i)[:2] for i in (2, 4)])
     assert s.anchor[:2] == pytest.approx(corners)
-    assert s.counters[modes.SLIDINGS] == 1
+    assert s.counters[limits.SLIDINGS] == 1
 
 
 def test_where_a_mode_comes_again_what_is_furthest_from_consistent_is_changed():
@@ -334,15 +340,15 @@ def test_where_a_mode_comes_again_what_is_furthest_from_consistent_is_changed():
     body.static = 0.5
     pushes = np.array([(0.1, 0.0, 0.5), (0.6, -0.8, 1.0), (0.0, 0.3, -0.2)])
     for what, left, slides in (
-        (modes.OPENS, [1, 2], [0, 0]),
-        (modes.LEAVES_CONE, [1, 2, 4], [0, 1, 0]),
+        (limits.OPENS, [1, 2], [0, 0]),
+        (limits.LEAVES_CONE, [1, 2, 4], [0, 1, 0]),
     ):
         mode(s, 1, 2, 4)
         s.lam[:3] = pushes
         # the third pulls, and is out of its cone the less
-        s.lam[2, 2] = -0.2 if what == modes.OPENS else 0.4
+        s.lam[2, 2] = -0.2 if what == limits.OPENS else 0.4
         s.anchor[:3] = [(1.0, 2.0), (3.0, 4.0), (5.0, 6.0)]
-        modes.insist(body, what, s)
+        contacts.insist(body, what, s)
         assert s.count == len(left)
         assert s.closed[: s.count].tolist() == left
         assert s.slides[: s.count].tolist() == slides
@@ -352,7 +358,7 @@ def test_where_a_mode_comes_again_what_is_furthest_from_consistent_is_changed():
     mode(s, 1, 2, 4)
     s.lam[:3, 2] = -1.0, 1.0, 1.0
     s.anchor[:3] = [(1.0, 2.0), (3.0, 4.0), (5.0, 6.0)]
-    modes.insist(body, modes.OPENS, s)
+    contacts.insist(body, limits.OPENS, s)
     assert s.closed[:2].tolist() == [2, 4]
     assert s.anchor[:2].tolist() == [[3.0, 4.0], [5.0, 6.0]]
 
@@ -428,12 +434,12 @@ def test_a_bond_bears_half_of_what_its_pads_would_have_to_on_either_side():
         pull = np.array([*rng.normal(0, 3, 2), -G])
         moments = body.height * pull[:2] + G * np.array(body.aside)
         needed = 0.5 * (-G + (np.abs(moments) / body.pads).sum())
-        found = modes.bond_tension(body, rotation(y), pull)
+        found = rest.bond_tension(body, rotation(y), pull)
         assert found == pytest.approx(needed)
         shear = body.shear + 0.4 * G - np.hypot(*pull[:2])
-        margin = modes.bond_margin(body, rotation(y), pull)
+        margin = rest.bond_margin(body, rotation(y), pull)
         assert margin == pytest.approx(min(body.tension - 2 * needed, shear))
-        assert modes.pulled_off(body, pull) == (np.hypot(*pull[:2]) > 0.4 * G)
+        assert rest.pulled_off(body, pull) == (np.hypot(*pull[:2]) > 0.4 * G)
 
 
 @pytest.mark.parametrize(
@@ -443,6 +449,6 @@ def test_a_body_lies_flat_only_where_it_neither_leans_nor_turns_nor_rises(place,
     body = uneven(np.random.default_rng(10))
     y = leaning(body, 0.0, 0.0)
     y[place] += 1e-3
-    assert modes.lies_flat(body, y, rotation(y)) == flat
+    assert points.lies_flat(body, y, rotation(y)) == flat
     y = leaning(body, 1e-3, 0.4)
-    assert not modes.lies_flat(body, y, rotation(y))
+    assert not points.lies_flat(body, y, rotation(y))

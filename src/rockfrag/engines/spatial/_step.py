@@ -17,9 +17,10 @@ from rockfrag.engines.pure_rocking.kernels.dormand_prince import (
     error_rate,
 )
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _face as face
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _hinge as hinge
-from rockfrag.engines.spatial import _modes as modes
+from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _pivot as pivot
 from rockfrag.engines.spatial._forces import (
     SLIDES,
@@ -174,7 +175,7 @@ def begin_slips(body, y, s):
             u = slip_of(body, y, rows, i, s)
             speed = norm(u[0], u[1])
             s.slip[i, 0], s.slip[i, 1] = s.direction[i, 0], s.direction[i, 1]
-            if speed > 2 * modes.AT_REST:
+            if speed > 2 * limits.AT_REST:
                 s.slip[i, 0], s.slip[i, 1] = u[0] / speed, u[1] / speed
                 s.direction[i, 0], s.direction[i, 1] = s.slip[i, 0], s.slip[i, 1]
                 s.armed[i] = 1
@@ -192,7 +193,7 @@ def face_slip(body, y, rows, s):
         fastest = max(fastest, norm(u[0], u[1]))
         forwards = max(forwards, slip_along(body, y, rows, i, s))
         armed = max(armed, s.armed[i])
-    return fastest - modes.AT_REST if armed else forwards + BACKWARD
+    return fastest - limits.AT_REST if armed else forwards + BACKWARD
 
 
 @kernel
@@ -220,7 +221,7 @@ def margin(body, y, s):
         tips = face_margin(body, s)
         least = lesser(least, tips) if body.walls else tips
         slip = face_slip(body, y, rows, s)
-        least = lesser(least, (slip, modes.SLIP_ENDS))
+        least = lesser(least, (slip, limits.SLIP_ENDS))
     else:
         least = lesser(least, contacts_margin(body, y, rows, s))
     if body.constraints > 0:
@@ -241,39 +242,42 @@ def ground_margin(body, y, rows, s):
     A point that is next to touch, but does not come down, has just parted: it is left alone until it is further
     below.
     """
-    least = modes.NO_LIMIT
+    least = limits.NO_LIMIT
     closed = closed_on_ground(s)
     turns = cross(rows[2], solid.omega_of(y))
     for i in solid.candidates(body):
         if not forces.in_set(closed, i):
             p = solid.arm(body, rows[2], i)
-            value = y[solid.HEIGHT] + dot(rows[2], p) + 0.5 * modes.TOUCH
-            if value < 0.5 * modes.TOUCH and not y[solid.UPWARD] + dot(turns, p) < DOWN:
-                value += modes.TOUCH
+            value = y[solid.HEIGHT] + dot(rows[2], p) + 0.5 * limits.TOUCH
+            if (
+                value < 0.5 * limits.TOUCH
+                and not y[solid.UPWARD] + dot(turns, p) < DOWN
+            ):
+                value += limits.TOUCH
             least = min(least, value)
-    return least, modes.LANDS
+    return least, limits.LANDS
 
 
 @kernel
 def walls_margin(body, y, rows, s):
     """Least gap of the open corners from their walls [m], as :func:`ground_margin`."""
-    least = modes.NO_LIMIT
+    least = limits.NO_LIMIT
     for i in solid.wall_candidates(body):
         if not solid.may_meet(body, i) or is_closed(s, i):
             continue
-        value = solid.gap_of(body, y, rows, i) + 0.5 * modes.TOUCH
+        value = solid.gap_of(body, y, rows, i) + 0.5 * limits.TOUCH
         meets = solid.approach_of(body, y, rows, i) < DOWN
-        if value < 0.5 * modes.TOUCH and not meets:
+        if value < 0.5 * limits.TOUCH and not meets:
             # what lies a little behind a wall, by the errors of steps, is pushed out as soon as it moves on
-            value = max(value + modes.TOUCH, 0.5 * modes.TOUCH)
+            value = max(value + limits.TOUCH, 0.5 * limits.TOUCH)
         least = min(least, value)
-    return least, modes.LANDS
+    return least, limits.LANDS
 
 
 @kernel
 def face_margin(body, s):
     """Distance of the centre of pressure of a face that slides from its edge [m], over which it tips."""
-    return modes.pressure_margin(body, s) + ON_EDGE, modes.OPENS
+    return face.pressure_margin(body, s) + ON_EDGE, limits.OPENS
 
 
 @kernel
@@ -286,38 +290,38 @@ def contacts_margin(body, y, rows, s):
     small = LEAST_FORCE * s.field[forces.GRAVITY]
     # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
     passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
-    least = (modes.NO_LIMIT, modes.NOTHING)
+    least = (limits.NO_LIMIT, limits.NOTHING)
     for i in range(s.count):
-        least = lesser(least, (s.lam[i, 2] + small, modes.OPENS))
+        least = lesser(least, (s.lam[i, 2] + small, limits.OPENS))
         if solid.is_smooth(body, s.closed[i]):
             continue
         if s.slides[i] == SLIDES:
-            off = -modes.AT_REST if s.armed[i] else BACKWARD
+            off = -limits.AT_REST if s.armed[i] else BACKWARD
             slip = slip_along(body, y, rows, i, s) + off
-            least = lesser(least, (slip, modes.SLIP_ENDS))
+            least = lesser(least, (slip, limits.SLIP_ENDS))
         elif not (s.jammed or passes):
             grip = solid.static_of(body, s.closed[i]) * s.lam[i, 2]
             left = grip - norm(s.lam[i, 0], s.lam[i, 1]) + small
-            least = lesser(least, (left, modes.LEAVES_CONE))
+            least = lesser(least, (left, limits.LEAVES_CONE))
     return least
 
 
 @kernel
 def ties_margin(body, y, rows, s):
     """Least margin of the ties that have not broken [m], and whether that one breaks, or turns taut or slack."""
-    least, what = modes.NO_LIMIT, modes.NOTHING
+    least, what = limits.NO_LIMIT, limits.NOTHING
     for i in range(body.constraints):
         if not body.ties[i] or s.broken[i]:
             continue
         _, length, rate = stretch_of(body, y, rows, i)
         value = tie_margin(body, length, rate, i)
-        value = 0.5 * modes.TOUCH + (value if s.taut[i] else -value)
+        value = 0.5 * limits.TOUCH + (value if s.taut[i] else -value)
         if value < least:
-            least, what = value, modes.TIE_TURNS
+            least, what = value, limits.TIE_TURNS
         force = abs(tie_force(body, length, rate, i))
         value = (body.strength[i] - force) / body.stiffness[i]
         if value < least:
-            least, what = value, modes.TIE_BREAKS
+            least, what = value, limits.TIE_BREAKS
     return least, what
 
 
@@ -361,4 +365,4 @@ def touches_between(gap, sinking, rising, h):
     if not sinking < 0 < rising:
         return False
     lowest = gap - 0.5 * h * sinking**2 / (rising - sinking)
-    return lowest - DEEPER * h * (rising - sinking) < -0.5 * modes.TOUCH
+    return lowest - DEEPER * h * (rising - sinking) < -0.5 * limits.TOUCH

@@ -15,7 +15,10 @@ impulse [m/s]; axes 0 and 1 are along the contact, 2 is away from it.
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _contacts as contacts
 from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _gaps as gaps
+from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _modes as modes
 
 PARTS = 16  # steps of a whole interval
@@ -41,7 +44,7 @@ def pass_interval(body, tau, dt, y, s):
     before = solid.balance(body, y, s.field[forces.GRAVITY])
     close_pressed(body, y, n, s)
     if not modes.choose_mode(body, dt, y, s):
-        modes.jam(body, y, s)
+        contacts.jam(body, y, s)
     return lost + loss_since(body, before, y, s)
 
 
@@ -109,7 +112,7 @@ def add_near(body, y, rows, i, n, h, s):
     if gap > NEAR or n == forces.MOST_NEAR:
         return n
     u = solid.in_frame(body, i, solid.velocity_of(body, y, rows, i))
-    slips = algebra.norm(u[0], u[1]) > modes.AT_REST
+    slips = algebra.norm(u[0], u[1]) > limits.AT_REST
     s.near[n] = i
     s.rubs[n] = solid.kinetic_of(body, i) if slips else solid.static_of(body, i)
     s.closes[n] = max(gap, 0.0) / h
@@ -172,10 +175,10 @@ def put_in_place(body, y, n, s):
                 moved = max(moved, 0.0)
             change = moved - s.moved[k]
             if change != 0.0:
-                modes.shift_at(body, y, rows, s.near[k], change)
+                gaps.shift_at(body, y, rows, s.near[k], change)
                 s.moved[k] = moved
             worst = max(worst, abs(change) * s.gives[k, 2])
-        if worst < modes.TOUCH:
+        if worst < limits.TOUCH:
             break
 
 

@@ -20,7 +20,8 @@ from rockfrag.engines.built_in import SPATIAL as ENGINE
 from rockfrag.engines.compile.jit import compiling_alone
 from rockfrag.engines.contract import Case, Cases, Request
 from rockfrag.engines.spatial import _integrate as kernel
-from rockfrag.engines.spatial import _modes as modes
+from rockfrag.engines.spatial import _limits as limits
+from rockfrag.engines.spatial import _outcome as outcome
 from rockfrag.engines.spatial._body import ATTITUDE, BOND, FRICTION, PLACE, SPIN
 from rockfrag.engines.spatial._forces import CASE
 from rockfrag.engines.spatial.body import (
@@ -232,7 +233,7 @@ def run_case(
     -------
     The outcome, and the history, shape (m, COLUMNS): m is ``samples`` at most.
     """
-    history = np.full((samples, kernel.COLUMNS), math.nan)
+    history = np.full((samples, outcome.COLUMNS), math.nan)
     found = run_scales(
         body,
         acceleration,
@@ -244,8 +245,8 @@ def run_case(
         history=history,
     )
     kept = ~np.isnan(history[:, 0])
-    outcome = _outcome(body, found.outs[0], found.counts[0], found.ends[0])
-    return outcome, history[kept]
+    told = _outcome(body, found.outs[0], found.counts[0], found.ends[0])
+    return told, history[kept]
 
 
 class Found(NamedTuple):
@@ -276,11 +277,11 @@ def run_scales(
     peaks = np.empty((len(acceleration), 4))
     begins = standing(body) if start is None else start
     found = Found(
-        np.zeros((len(scales), kernel.OUTCOME)),
-        np.zeros((len(scales), modes.COUNTERS), np.int64),
+        np.zeros((len(scales), outcome.OUTCOME)),
+        np.zeros((len(scales), limits.COUNTERS), np.int64),
         np.tile(begins, (len(scales), 1)),
     )
-    rows = np.empty((0, kernel.COLUMNS)) if history is None else history
+    rows = np.empty((0, outcome.COLUMNS)) if history is None else history
     extra = math.ceil(AFTER / dt)
     bodies, cases = np.asarray(body).reshape(1), np.zeros(1, CASE)
     with compiling_alone(kernel.integrate_scales):
@@ -295,26 +296,26 @@ def _outcome(
     body: np.void, out: Floats, counters: NDArray[np.int64], y: Floats
 ) -> SpatialOutcome:
     """An outcome by names, from what the kernel left: a row (OUTCOME,), its counters and the last state."""
-    fell = bool(out[kernel.FELL])
+    fell = bool(out[outcome.FELL])
     return SpatialOutcome(
         overturned=fell,
-        certain_time=float(out[kernel.CERTAIN_TIME]),
-        fall_direction=float(out[kernel.FALL_AZIMUTH]) if fell else math.nan,
+        certain_time=float(out[outcome.CERTAIN_TIME]),
+        fall_direction=float(out[outcome.FALL_AZIMUTH]) if fell else math.nan,
         fell_over=_named(body, out.tolist()) if fell else "",
-        peak_rotation=math.inf if fell else float(out[kernel.PEAK_RATIO]),
-        peak_tilt=float(out[kernel.PEAK_TILT]),
-        peak_velocity=float(out[kernel.PEAK_SPEED]),
-        walk=(float(out[kernel.WALK_X]), float(out[kernel.WALK_Y])),
-        turn=float(out[kernel.TURN]),
-        impacts=int(counters[modes.IMPACTS]),
-        slidings=int(counters[modes.SLIDINGS]),
-        flights=int(counters[modes.FLIGHTS]),
-        ambiguous=int(counters[modes.AMBIGUOUS]),
-        paradoxes=int(counters[modes.UNSOLVED] + counters[modes.JAMS]),
-        dissipated=(float(out[kernel.LOST]), float(y[FRICTION])),
-        residual=float(out[kernel.ENERGY_BALANCE]),
-        gained=float(out[kernel.GAINED]),
-        beyond_friction=float(out[kernel.BEYOND]),
+        peak_rotation=math.inf if fell else float(out[outcome.PEAK_RATIO]),
+        peak_tilt=float(out[outcome.PEAK_TILT]),
+        peak_velocity=float(out[outcome.PEAK_SPEED]),
+        walk=(float(out[outcome.WALK_X]), float(out[outcome.WALK_Y])),
+        turn=float(out[outcome.TURN]),
+        impacts=int(counters[limits.IMPACTS]),
+        slidings=int(counters[limits.SLIDINGS]),
+        flights=int(counters[limits.FLIGHTS]),
+        ambiguous=int(counters[limits.AMBIGUOUS]),
+        paradoxes=int(counters[limits.UNSOLVED] + counters[limits.JAMS]),
+        dissipated=(float(out[outcome.LOST]), float(y[FRICTION])),
+        residual=float(out[outcome.ENERGY_BALANCE]),
+        gained=float(out[outcome.GAINED]),
+        beyond_friction=float(out[outcome.BEYOND]),
     )
 
 
@@ -323,7 +324,7 @@ def _named(body: np.void, out: Sequence[float]) -> str:
 
     Vertices are numbered from 1, in the order of the base.
     """
-    first, second = int(out[kernel.FALL_FIRST]), int(out[kernel.FALL_SECOND])
+    first, second = int(out[outcome.FALL_FIRST]), int(out[outcome.FALL_SECOND])
     if first < 0:
         return "flight"
     if body["rim"] > 0:
@@ -351,8 +352,8 @@ def history_table(history: Floats, dt: float, height: float) -> pd.DataFrame:
     # the body's z axis in axes of the ground, from the quaternion
     axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
     place = history[:, PLACE : PLACE + 3]
-    count = history[:, kernel.COUNT]
-    closed = np.where(count == kernel.RESTS, math.nan, count)
+    count = history[:, outcome.COUNT]
+    closed = np.where(count == outcome.RESTS, math.nan, count)
     return pd.DataFrame(
         {
             "time_s": np.arange(len(history)) * dt,
@@ -360,7 +361,7 @@ def history_table(history: Floats, dt: float, height: float) -> pd.DataFrame:
             "tilt_rad": np.arctan2(np.hypot(axis[0], axis[1]), axis[2]),
             "axis_x": axis[0],
             "axis_y": axis[1],
-            "turn_rad": history[:, kernel.TURNED],
+            "turn_rad": history[:, outcome.TURNED],
             "base_x_m": place[:, 0] - height * axis[0],
             "base_y_m": place[:, 1] - height * axis[1],
             **{
@@ -380,24 +381,24 @@ def _write(
     ``case`` is the place of the system and the motion in the grid.
     """
     outs, counts = found.outs, found.counts
-    fell = outs[:, kernel.FELL] > 0
+    fell = outs[:, outcome.FELL] > 0
     result.overturned[case], result.overturned_body[case] = fell, fell
-    result.certain_time[case] = outs[:, kernel.CERTAIN_TIME]
-    result.impacts[case] = counts[:, modes.IMPACTS]
-    result.flights[case] = counts[:, modes.FLIGHTS]
-    result.paradoxes[case] = counts[:, modes.UNSOLVED] + counts[:, modes.JAMS]
-    result.several_modes[case] = counts[:, modes.AMBIGUOUS]
+    result.certain_time[case] = outs[:, outcome.CERTAIN_TIME]
+    result.impacts[case] = counts[:, limits.IMPACTS]
+    result.flights[case] = counts[:, limits.FLIGHTS]
+    result.paradoxes[case] = counts[:, limits.UNSOLVED] + counts[:, limits.JAMS]
+    result.several_modes[case] = counts[:, limits.AMBIGUOUS]
     result.unstable_distance[case] = math.nan
-    result.leaning[case] = outs[:, kernel.LEANS] > 0
-    peaks = np.where(fell, math.inf, outs[:, kernel.PEAK_RATIO])
-    directions = np.where(fell, outs[:, kernel.FALL_AZIMUTH], math.nan)
+    result.leaning[case] = outs[:, outcome.LEANS] > 0
+    peaks = np.where(fell, math.inf, outs[:, outcome.PEAK_RATIO])
+    directions = np.where(fell, outs[:, outcome.FALL_AZIMUTH], math.nan)
     result.peak_rotation[case][:, 0] = peaks
-    result.peak_velocity[case][:, 0] = outs[:, kernel.PEAK_SPEED]
-    result.turn[case][:, 0] = outs[:, kernel.TURN]
+    result.peak_velocity[case][:, 0] = outs[:, outcome.PEAK_SPEED]
+    result.turn[case][:, 0] = outs[:, outcome.TURN]
     result.fall_direction[case][:, 0] = directions
     for k, out in enumerate(outs.tolist()):
         result.fell_over[case][k, 0] = _named(body, out) if fell[k] else ""
-        result.walk[case][k, 0] = math.hypot(out[kernel.WALK_X], out[kernel.WALK_Y])
+        result.walk[case][k, 0] = math.hypot(out[outcome.WALK_X], out[outcome.WALK_Y])
 
 
 def _write_holding(
@@ -411,8 +412,8 @@ def _write_holding(
         rows[len(system.constraints)] = BOND
     mass = system.bodies[0].mass
     for row, holder in rows.items():
-        first = kernel.HELD + kernel.OF_HOLDER * holder
-        of_holder = found.outs[:, first : first + kernel.OF_HOLDER]
+        first = outcome.HELD + outcome.OF_HOLDER * holder
+        of_holder = found.outs[:, first : first + outcome.OF_HOLDER]
         hits, impact, force, breaks = of_holder.T
         result.hits[case][:, row] = hits
         result.largest_impulse[case][:, row] = mass * impact

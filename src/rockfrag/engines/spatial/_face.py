@@ -1,0 +1,115 @@
+"""A body that lies flat: it stands, slides on its face, or its centre of pressure leaves that.
+
+In: a state in which it lies flat. Out: the mode in which it goes on. Theory: ``docs/space.md``, "Friction and
+impacts".
+
+Names (``_body`` explains the state and the numbers of contacts):
+
+- ``body``, ``s``: records ``BODY`` and ``CASE``; ``y``: the state, shape (15,)
+- ``rows``: the world's axes as the body sees them, ``rows[2]`` the upward one
+- ``gravity``: effective gravity, equation 1, in the world [m/s²]
+"""
+
+from rockfrag.engines.algebra import vectors as algebra
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _gaps as gaps
+from rockfrag.engines.spatial import _limits as limits
+from rockfrag.engines.spatial import _points as points
+from rockfrag.engines.spatial import _rest as rest
+
+# distance of the centre of pressure from a face's edge over the furthest point's [-] that is rounding
+ON_EDGE = 1e-9
+
+
+@kernel
+def stay_on_face(body, tau, y, rows, gravity, s):
+    """Let a body that lies flat slide or rest on its whole face; return whether it stays on it.
+
+    Points that slip by less than twice AT_REST may stick, if the ground carries the body at rest. A polygon that
+    neither slips nor begins to is left to the forces of its contacts.
+    """
+    slip = algebra.norm(y[solid.VELOCITY], y[solid.VELOCITY + 1])
+    slip += body.furthest * abs(y[solid.SPIN + 2])
+    stands = rest.rest_margin(body, y, rows, gravity, s) >= 0
+    slides = (
+        slip >= 2 * limits.AT_REST or rest.pulled_off(body, gravity) or body.rim > 0
+    )
+    if not slides or not carried_flat(body, tau, y, rows, gravity, s):
+        return False
+    if slip < 2 * limits.AT_REST and stands:
+        gaps.come_to_rest(body, y, s)
+    else:
+        slide_flat(body, y, rows, gravity, s)
+        s.counters[limits.SLIDINGS] += 1
+    s.jammed = 0
+    return True
+
+
+@kernel
+def carried_flat(body, tau, y, rows, gravity, s):
+    """Whether a body that lies flat, and slides or is about to, stays on its face; s gets the mode of a polygon.
+
+    A polygon stays if the centre of pressure under it is inside. A round base stays if friction cannot tip it, µ h
+    less than the distance of the rim; or if it does not slide yet and the ground carries it. ``tau`` is the time
+    in the interval [s].
+    """
+    if body.rim == 0.0:
+        slide_flat(body, y, rows, gravity, s)
+        forces.rates(body, tau, y, s.slopes[0], s)
+        return pressure_margin(body, s) > ON_EDGE * body.furthest
+    off = algebra.norm(body.centre[0], body.centre[1])
+    if body.kinetic * body.height + off < body.rim:
+        return True
+    return (
+        algebra.norm(y[solid.VELOCITY], y[solid.VELOCITY + 1]) < limits.AT_REST
+        and rest.topple_margin(body, rows, gravity) >= 0
+    )
+
+
+@kernel
+def slide_flat(body, y, rows, gravity, s):
+    """Let the body slide on its whole face: write such a mode to ``s``.
+
+    Points slide where they slip to; those that do not slip yet slide where effective gravity takes them.
+    """
+    level = max(algebra.norm(gravity[0], gravity[1]), algebra.TINY)
+    n = points.pick_feet(body, y, rows, s)
+    s.count, s.rests = n, 0
+    for i in range(n):
+        s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
+    for i in range(n):
+        u = forces.slip_of(body, y, rows, i, s)
+        s.direction[i, 0], s.direction[i, 1] = gravity[0] / level, gravity[1] / level
+        s.direction[i, 0], s.direction[i, 1] = forces.slip_direction(s, i, u[0], u[1])
+
+
+@kernel
+def pressure_margin(body, s):
+    """Distance of the centre of pressure of a face from its nearest edge, or the rim; negative outside [m]."""
+    x, y = pressure_centre(body, s)
+    if body.rim > 0:
+        return body.rim - algebra.norm(x, y)
+    least = limits.NO_LIMIT
+    for i in range(body.count):
+        p, q = body.points[i], body.points[i + 1 if i + 1 < body.count else 0]
+        along, across = q[0] - p[0], q[1] - p[1]
+        moment = across * (p[0] - x) - along * (p[1] - y)
+        least = min(least, moment / algebra.norm(along, across))
+    return least
+
+
+@kernel
+def pressure_centre(body, s):
+    """Where the normal forces of the closed points act, in the base of the body, (x, y) [m].
+
+    It counts from the centre of a round base, and of a polygon from below the centre of mass, where body.centre is
+    0.
+    """
+    x, y, total = 0.0, 0.0, algebra.TINY
+    for i in range(s.count):
+        x += s.lam[i, 2] * (body.points[s.closed[i], 0] - body.centre[0])
+        y += s.lam[i, 2] * (body.points[s.closed[i], 1] - body.centre[1])
+        total += s.lam[i, 2]
+    return x / total, y / total
