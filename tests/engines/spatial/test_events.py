@@ -438,7 +438,7 @@ def test_the_ground_is_linear_between_samples_and_at_rest_one_after_the_last():
 
 def test_a_window_is_passed_at_rest_only_where_no_direction_of_its_peaks_moves_the_body():
     rng, seen = np.random.default_rng(12), set()
-    body = uneven(rng)
+    body, s = uneven(rng), case()
     for _ in range(30):
         peaks = rng.uniform(0, 6, (1, 4))
         level, weight = 1.5 * peaks[0, 2], G - 1.5 * peaks[0, 3]
@@ -447,7 +447,7 @@ def test_a_window_is_passed_at_rest_only_where_no_direction_of_its_peaks_moves_t
             gravity = [level * math.cos(angle), level * math.sin(angle), -weight]
             edges, shear = margins_of_rest(np.array(gravity), np.eye(3))
             rests = rests and edges.min() > 0 and shear > 0
-        assert at_rest.rests_on(body, peaks, 0, 1.5, G) == rests
+        assert at_rest.rests_on(body, upright(body), peaks, 0, 1.5, G, s) == rests
         seen.add(rests)
     assert seen == {True, False}
 
@@ -1071,7 +1071,8 @@ def test_a_body_slides_on_its_face_while_the_centre_of_pressure_is_inside():
         y[7:9] = math.cos(way), math.sin(way)
         ahead = body.kinetic * body.height * y[7:9]
         gravity = (0.0, 0.0, -G)
-        stays = face.carried_flat(body, 0.0, y, rotation(y), gravity, s)
+        load = rest.load_at_rest(body, y, rotation(y), gravity, s)
+        stays = face.carried_flat(body, 0.0, y, rotation(y), load, s)
         assert face.pressure_centre(body, s) == pytest.approx(ahead, abs=1e-9)
         along = np.roll(CORNERS, -1, axis=0) - CORNERS
         beside = ahead - CORNERS

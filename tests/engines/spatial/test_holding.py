@@ -236,6 +236,47 @@ def test_a_shelf_leans_where_its_foot_holds_and_slides_down_where_it_does_not():
         assert told.overturned == (part < 1)
 
 
+@pytest.mark.parametrize("part", [0.5, 0.9, 1.1, 2.0])
+@pytest.mark.parametrize("tips", [False, True])
+@pytest.mark.parametrize("is_round", [False, True])
+def test_a_taut_cord_moves_what_stands_where_statics_says_so(is_round, tips, part):
+    """It slides where the cord bears more than friction does, and tips where that is more than it weighs down.
+
+    Cords lead any way from a round base, and across a side of a square one.
+    """
+    rng, mu, radius = np.random.default_rng(15), 0.5, 0.15
+    kind = {"round": True} if is_round else {"depth": 2 * radius}
+    # over the base: higher than where as much friction as there is would tip it, or lower; and one so squat that
+    # it does not tip as it slides to rest either
+    height, tall = (2 * radius / mu, 0.9) if tips else (0.5 * radius / mu, 0.2)
+    vase = Block(2 * radius, tall, 30.0, **kind)
+    limit = min(mu, radius / height) * vase.mass * G
+    for _ in range(6):
+        angle = (
+            rng.uniform(-math.pi, math.pi)
+            if is_round
+            else rng.integers(4) * math.pi / 2
+        )
+        way = np.array([math.cos(angle), math.sin(angle), 0.0])
+        stretch = rng.uniform(1e-3, 1e-2)
+        cord = Tie((0.0, 0.0, height), (way[0], way[1], height), part * limit / stretch)
+        held = hold(vase.system(), cord)
+        grips = (replace(held.contacts[0], friction=Friction(mu, mu)),)
+        body = kernel_body(replace(held, contacts=grips))
+        y = standing(body)
+        y[:2] -= stretch * way[:2]
+        told, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
+        assert told.paradoxes == 0
+        moved = (history[-1, :2] - y[:2]) @ way[:2]
+        if part < 1:
+            assert abs(history[:, :2] - y[:2]).max() < 1e-8
+            assert told.peak_tilt < 1e-8
+        elif tips:
+            assert told.peak_tilt > 1e-4 and moved > 0
+        else:
+            assert told.peak_tilt < 1e-8 and moved > 1e-5
+
+
 @pytest.mark.parametrize(
     "cases", [2, pytest.param(60, marks=pytest.mark.slow, id="many")]
 )

@@ -439,7 +439,10 @@ def test_a_bond_bears_half_of_what_its_pads_would_have_to_on_either_side():
         shear = body.shear + 0.4 * G - np.hypot(*pull[:2])
         margin = rest.bond_margin(body, rotation(y), pull)
         assert margin == pytest.approx(min(body.tension - 2 * needed, shear))
-        assert rest.pulled_off(body, pull) == (np.hypot(*pull[:2]) > 0.4 * G)
+        load = rest.Load(pull, pull, 0.0, False)
+        assert rest.grip_margin(body, load) == pytest.approx(
+            0.4 * G - np.hypot(*pull[:2])
+        )
 
 
 @pytest.mark.parametrize(

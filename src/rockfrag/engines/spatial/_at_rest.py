@@ -26,11 +26,12 @@ NO_MARGIN = 1e-9  # part of gravity by which a margin of rest is none [-]
 
 
 @kernel
-def rests_on(body, peaks, k, scale, g):
+def rests_on(body, y, peaks, k, scale, g, s):
     """Whether a body at rest stays there for the next WINDOW intervals, whichever way the ground pushes."""
     level, weight = scale * peaks[k, 2], g - scale * peaks[k, 3]
     upright = level * body.height < weight * body.nearest * (1 - NO_MARGIN)
-    return upright and level < body.static * weight
+    carried = upright and level < body.static * weight
+    return carried and not rest.is_tied(body, y, algebra.rotation(y), s)
 
 
 @kernel
@@ -44,10 +45,11 @@ def rest_ends(body, y, s, tau, dt):
     gravity = forces.effective_gravity_at(field, dt)
     level = algebra.norm(gravity[0], gravity[1])
     upright = level * body.height < -gravity[2] * body.nearest * (1 - NO_MARGIN)
-    if upright and level < -body.static * gravity[2] and not s.bonded:
+    rows = algebra.rotation(y)
+    carried = upright and level < -body.static * gravity[2]
+    if carried and not s.bonded and not rest.is_tied(body, y, rows, s):
         # a flat body rests whichever way it is pulled
         return -1.0
-    rows = algebra.rotation(y)
     below = rest.rest_margin(body, y, rows, gravity, s)
     if below >= 0:
         return -1.0
@@ -78,6 +80,8 @@ def leave_rest(body, y, tau, s):
     """
     rows = algebra.rotation(y)
     gravity = forces.effective_gravity_at(s.field, tau)
+    if rest.is_tied(body, y, rows, s) and modes.choose_mode(body, tau, y, s):
+        return
     if body.walls:
         gravity = rest.borne_by_ground(body, y, rows, gravity)
     small = NO_MARGIN * s.field[forces.GRAVITY]

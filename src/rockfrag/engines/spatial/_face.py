@@ -7,7 +7,7 @@ Names (``_body`` explains the state and the numbers of contacts):
 
 - ``body``, ``s``: records ``BODY`` and ``CASE``; ``y``: the state, shape (15,)
 - ``rows``: the world's axes as the body sees them, ``rows[2]`` the upward one
-- ``gravity``: effective gravity, equation 1, in the world [m/s²]
+- ``gravity``: effective gravity, equation 1, in the world [m/s²]; ``load``: gravity and ties, :class:`_rest.Load`
 """
 
 from rockfrag.engines.algebra import vectors as algebra
@@ -28,35 +28,35 @@ def stay_on_face(body, tau, y, rows, gravity, s):
     """Let a body that lies flat slide or rest on its whole face; return whether it stays on it.
 
     Points that slip by less than twice AT_REST may stick, if the ground carries the body at rest. A polygon that
-    neither slips nor begins to is left to the forces of its contacts.
+    neither slips nor begins to is left to the forces of its contacts, and so is a round base with a taut tie.
     """
     slip = algebra.norm(y[solid.VELOCITY], y[solid.VELOCITY + 1])
     slip += body.furthest * abs(y[solid.SPIN + 2])
-    stands = rest.rest_margin(body, y, rows, gravity, s) >= 0
-    slides = (
-        slip >= 2 * limits.AT_REST or rest.pulled_off(body, gravity) or body.rim > 0
-    )
-    if not slides or not carried_flat(body, tau, y, rows, gravity, s):
+    load = rest.load_at_rest(body, y, rows, gravity, s)
+    stands = rest.standing_margin(body, y, rows, load) >= 0
+    slides = slip >= 2 * limits.AT_REST or rest.grip_margin(body, load) < 0
+    slides = slides or (body.rim > 0 and not load.tied)
+    if not slides or not carried_flat(body, tau, y, rows, load, s):
         return False
     if slip < 2 * limits.AT_REST and stands:
         gaps.come_to_rest(body, y, s)
     else:
-        slide_flat(body, y, rows, gravity, s)
+        slide_flat(body, y, rows, load, s)
         s.counters[limits.SLIDINGS] += 1
     s.jammed = 0
     return True
 
 
 @kernel
-def carried_flat(body, tau, y, rows, gravity, s):
-    """Whether a body that lies flat, and slides or is about to, stays on its face; s gets the mode of a polygon.
+def carried_flat(body, tau, y, rows, load, s):
+    """Whether a body that lies flat, and slides or is about to, stays on its face; s gets the mode of most.
 
-    A polygon stays if the centre of pressure under it is inside. A round base stays if friction cannot tip it, µ h
-    less than the distance of the rim; or if it does not slide yet and the ground carries it. ``tau`` is the time
-    in the interval [s].
+    It stays if the centre of pressure under it is inside. A round base without ties stays if friction cannot tip
+    it, µ h less than the distance of the rim; or if it does not slide yet and the ground carries it. ``tau`` is
+    the time in the interval [s].
     """
-    if body.rim == 0.0:
-        slide_flat(body, y, rows, gravity, s)
+    if body.rim == 0.0 or load.tied:
+        slide_flat(body, y, rows, load, s)
         forces.rates(body, tau, y, s.slopes[0], s)
         return pressure_margin(body, s) > ON_EDGE * body.furthest
     off = algebra.norm(body.centre[0], body.centre[1])
@@ -64,24 +64,28 @@ def carried_flat(body, tau, y, rows, gravity, s):
         return True
     return (
         algebra.norm(y[solid.VELOCITY], y[solid.VELOCITY + 1]) < limits.AT_REST
-        and rest.topple_margin(body, rows, gravity) >= 0
+        and rest.topple_margin(body, rows, load.tilting) >= 0
     )
 
 
 @kernel
-def slide_flat(body, y, rows, gravity, s):
+def slide_flat(body, y, rows, load, s):
     """Let the body slide on its whole face: write such a mode to ``s``.
 
-    Points slide where they slip to; those that do not slip yet slide where effective gravity takes them.
+    Points slide where they slip to; those that do not slip yet slide where the load takes them.
     """
-    level = max(algebra.norm(gravity[0], gravity[1]), algebra.TINY)
+    # by ties the body turns as well [1/s²]
+    turns = load.twisting / body.inertia[2, 2]
     n = points.pick_feet(body, y, rows, s)
     s.count, s.rests = n, 0
     for i in range(n):
         s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
     for i in range(n):
         u = forces.slip_of(body, y, rows, i, s)
-        s.direction[i, 0], s.direction[i, 1] = gravity[0] / level, gravity[1] / level
+        p = algebra.to_world(rows, solid.arm(body, rows[2], s.closed[i]))
+        x, z = load.force[0] - turns * p[1], load.force[1] + turns * p[0]
+        level = max(algebra.norm(x, z), algebra.TINY)
+        s.direction[i, 0], s.direction[i, 1] = x / level, z / level
         s.direction[i, 0], s.direction[i, 1] = forces.slip_direction(s, i, u[0], u[1])
 
 

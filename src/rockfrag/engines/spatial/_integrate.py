@@ -156,7 +156,7 @@ def integrate(
     k = 0
     while k <= last + extra:
         skips = s.rests == 1 and s.bonded == 0 and k + ground.WINDOW <= last
-        if skips and at_rest.rests_on(body, peaks, k, scale, g):
+        if skips and at_rest.rests_on(body, y, peaks, k, scale, g, s):
             for _ in range(ground.WINDOW):
                 outcome.record(history, k, y, before, out, s)
                 k += 1

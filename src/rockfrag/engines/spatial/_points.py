@@ -18,6 +18,7 @@ from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _limits as limits
+from rockfrag.engines.spatial import _rest as rest
 
 # difference of velocities that is rounding [m/s]: of contacts as fast as each other the first ones are kept
 AS_FAST = 1e-14
@@ -75,13 +76,14 @@ def stand_on_feet(body, y, rows, s):
     """Fill s.which with the feet of a flat round base: four points of its rim; return how many touch.
 
     ``body.points`` holds 32 points of the rim in equal steps of angle. The first foot is the one next to where the
-    body would tip: ahead of its centre if it slides, else where the ground's motion pushes it. The others follow
-    at right angles.
+    body would tip: ahead of its centre if it slides, else where the ground's motion and ties push it. The others
+    follow at right angles.
     """
     centre = (body.centre[0], body.centre[1], -body.height)
     forwards = solid.point_velocity(y, rows, centre)
     if algebra.norm(forwards[0], forwards[1]) < limits.AT_REST:
-        forwards = (s.field[0], s.field[1], 0.0)
+        now = (s.field[0], s.field[1], s.field[2])
+        forwards = rest.load_at_rest(body, y, rows, now, s).tilting
     ahead = algebra.to_body(rows, (forwards[0], forwards[1], 0.0))
     quarter = body.count // forces.MOST
     turns = atan2(ahead[1], ahead[0]) / (2 * math.pi)

@@ -10,6 +10,8 @@ Names (``_body`` explains the state and the numbers of contacts):
 - ``gravity``: effective gravity, equation 1, in the world [m/s²]
 """
 
+from typing import Any, NamedTuple
+
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
@@ -20,37 +22,82 @@ from rockfrag.engines.spatial import _limits as limits
 NO_FORCE, PARALLEL = 1e-9, 1e-9
 
 
+class Load(NamedTuple):
+    """What acts on a body as it stands, in the world."""
+
+    force: Any  # gravity and ties, (x, y, up) [N/kg]
+    tilting: Any  # the force at the centre of mass that would tip it as they do [N/kg]
+    twisting: float  # moment about the vertical [N m/kg]
+    tied: bool  # whether a tie acts
+
+
 @kernel
 def rest_margin(body, y, rows, gravity, s):
     """Least margin by which a body rests [m/s²]: against tipping over each edge of its base, and against sliding.
 
-    Negative: the ground does not carry it at rest (``docs/space.md``, equation 21). Edges lie between points that
-    touch and follow each other around the base. With ties in tension, or with less than two points, it is -1: no
-    rest.
+    Negative: the ground does not carry it at rest (``docs/space.md``, equation 21).
     """
     if s.bonded:
         return bond_margin(body, rows, gravity)
-    if body.constraints > 0 and pulled_by_ties(body, y, rows, s):
-        return -1.0
-    if body.walls:
-        gravity = borne_by_ground(body, y, rows, gravity)
-    level = algebra.norm(gravity[0], gravity[1])
-    margin = -body.static * gravity[2] - level
+    return standing_margin(body, y, rows, load_at_rest(body, y, rows, gravity, s))
+
+
+@kernel
+def standing_margin(body, y, rows, load):
+    """Least margin by which a body that no bond holds rests under a load, as :func:`rest_margin` says.
+
+    Edges lie between points that touch and follow each other around the base. With less than two points it is -1:
+    no rest.
+    """
+    tilting, margin = load.tilting, grip_margin(body, load)
     if body.rim > 0:
-        return min(margin, topple_margin(body, rows, gravity))
+        return min(margin, topple_margin(body, rows, tilting))
     last = -1
     first = -1
     for i in range(body.count):
         if solid.gap(body, y, rows[2], i) > limits.TOUCH:
             continue
         if last >= 0:
-            margin = min(margin, tipping_margin(body, y, rows, gravity, last, i))
+            margin = min(margin, tipping_margin(body, y, rows, tilting, last, i))
         else:
             first = i
         last = i
     if first == last:
         return -1.0
-    return min(margin, tipping_margin(body, y, rows, gravity, last, first))
+    return min(margin, tipping_margin(body, y, rows, tilting, last, first))
+
+
+@kernel
+def load_at_rest(body, y, rows, gravity, s):
+    """What acts on a body as it stands: gravity and taut ties, less what walls bear. See :class:`Load`.
+
+    A force f at the height z over the centre of mass tips as one of f (1 + z / h) at that centre would.
+    """
+    force, tilting, twisting, tied = gravity, gravity, 0.0, False
+    if is_tied(body, y, rows, s):
+        tied = True
+        moment = algebra.to_world(rows, forces.twist_by_ties(s))
+        force = algebra.to_world(rows, (s.pulled[0], s.pulled[1], s.pulled[2]))
+        force = algebra.plus(gravity, force)
+        x, z = moment[1] / body.height, -moment[0] / body.height
+        tilting, twisting = algebra.plus(force, (x, z, 0.0)), moment[2]
+    if body.walls:
+        force = borne_by_ground(body, y, rows, force)
+        tilting = borne_by_ground(body, y, rows, tilting)
+    return Load(force, tilting, twisting, tied)
+
+
+@kernel
+def grip_margin(body, load):
+    """By how much static friction of the whole base holds more than acts along it [m/s²].
+
+    Beside a moment about the vertical it holds less: its limit is an ellipse, whose axis is the moment that an
+    even pressure bears (Howe and Cutkosky 1996).
+    """
+    level = algebra.norm(load.force[0], load.force[1])
+    if load.twisting != 0.0:
+        level = algebra.norm(level, load.twisting / body.twist)
+    return -body.static * load.force[2] - level
 
 
 @kernel
@@ -120,12 +167,6 @@ def borne_by_ground(body, y, rows, gravity):
 
 
 @kernel
-def pulled_off(body, gravity):
-    """Whether static friction of the whole base cannot hold it under an effective gravity in the world [m/s²]."""
-    return algebra.norm(gravity[0], gravity[1]) > -body.static * gravity[2]
-
-
-@kernel
 def topple_margin(body, rows, gravity):
     """Margin of a flat round body against tipping, whatever it slides [m/s²] (``docs/space.md``, equation 21)."""
     centre = algebra.to_world(rows, (body.centre[0], body.centre[1], 0.0))
@@ -165,8 +206,10 @@ def bond_tension(body, rows, gravity):
 
 
 @kernel
-def pulled_by_ties(body, y, rows, s):
+def is_tied(body, y, rows, s):
     """Whether ties act at a body as it stands with more than rounding; their force stays in s.pulled [N/kg]."""
+    if body.constraints == 0:
+        return False
     forces.fill_tie_forces(body, y, rows, s)
     pulled = abs(s.pulled[0]) + abs(s.pulled[1]) + abs(s.pulled[2])
     return pulled > NO_FORCE * s.field[forces.GRAVITY]
