@@ -277,6 +277,30 @@ def test_a_taut_cord_moves_what_stands_where_statics_says_so(is_round, tips, par
             assert told.peak_tilt < 1e-8 and moved > 1e-5
 
 
+@pytest.mark.parametrize("part", [0.95, 1.3])
+@pytest.mark.parametrize("is_round", [False, True])
+def test_a_cord_beside_the_middle_moves_what_stands_beyond_an_ellipse(is_round, part):
+    """Beside a moment friction bears less; an even pressure bears µ m g times the mean distance of the base's points."""
+    mu, radius, aside, stretch = 0.5, 0.15, 0.1, 4e-3
+    kind = {"round": True} if is_round else {"depth": 2 * radius}
+    chest = Block(2 * radius, 0.2, 30.0, **kind)
+    distance = 2 / 3 * radius if is_round else 0.3826 * 2 * radius
+    limit = mu * chest.mass * G / math.hypot(1.0, aside / distance)
+    knot, anchor = (0.0, aside, 0.1), (3.0, aside, 0.1)
+    held = hold(chest.system(), Tie(knot, anchor, part * limit / stretch))
+    grips = (replace(held.contacts[0], friction=Friction(mu, mu)),)
+    body = kernel_body(replace(held, contacts=grips))
+    y = standing(body)
+    y[0] -= stretch
+    told, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
+    assert told.paradoxes == 0
+    if part < 1:
+        assert abs(history[:, :2] - y[:2]).max() < 1e-8
+    else:
+        # its centre follows the cord, and it turns towards it
+        assert history[-1, 0] > y[0] + 1e-4 and told.turn < -1e-3
+
+
 @pytest.mark.parametrize(
     "cases", [2, pytest.param(60, marks=pytest.mark.slow, id="many")]
 )

@@ -621,9 +621,8 @@ def solve_general(body, y, rows, n, rubs, s):
     without them.
     """
     fill_delassus(body, rows, s.closed, n, s.delassus, twist_of(body, s))
+    fill_ways(body, y, rows, n, s)
     for i in range(n):
-        u = slip_of(body, y, rows, i, s)
-        s.way[i, 0], s.way[i, 1] = slip_direction(s, i, u[0], u[1])
         s.given[i], s.friction[i] = s.slides[i], 0.0
         if rubs:
             s.friction[i] = solid.kinetic_of(body, s.closed[i])
@@ -638,6 +637,26 @@ def solve_general(body, y, rows, n, rubs, s):
     for i in range(n):
         for k in range(3):
             s.lam[i, k] = s.impulse[3 * i + k]
+
+
+@kernel
+def fill_ways(body, y, rows, n, s):
+    """Fill s.way of n closed contacts with the direction of their slip, less where a face turns about one of them.
+
+    Next to the point that a face turns about a contact would rub this way and that: below SLIP_FLOOR its friction
+    is in proportion to its slip, as the friction of a whole face is around that point.
+    """
+    fastest = 0.0
+    for i in range(n):
+        u = slip_of(body, y, rows, i, s)
+        fastest = max(fastest, norm(u[0], u[1]))
+        s.way[i, 0], s.way[i, 1] = slip_direction(s, i, u[0], u[1])
+    if n < 3 or fastest < 2 * SLIP_FLOOR:
+        return
+    for i in range(n):
+        u = slip_of(body, y, rows, i, s)
+        if norm(u[0], u[1]) < SLIP_FLOOR:
+            s.way[i, 0], s.way[i, 1] = u[0] / SLIP_FLOOR, u[1] / SLIP_FLOOR
 
 
 @kernel
