@@ -230,10 +230,10 @@ def test_a_shelf_leans_where_its_foot_holds_and_slides_down_where_it_does_not():
         c, s = math.cos(angle), math.sin(angle)
         lever = np.array([c * arm[0] + s * arm[2], 0.0, -s * arm[0] + c * arm[2]])
         y[:3] = np.array([0.15, 0.0, 0.0]) - lever
-        told, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
+        found, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
         moved = np.abs(history[-1, :3] - history[0, :3]).max()
         assert (moved < 1e-6) == (part > 1), (part, moved)
-        assert told.overturned == (part < 1)
+        assert found.overturned == (part < 1)
 
 
 @pytest.mark.parametrize("part", [0.5, 0.9, 1.1, 2.0])
@@ -265,22 +265,22 @@ def test_a_taut_cord_moves_what_stands_where_statics_says_so(is_round, tips, par
         body = kernel_body(replace(held, contacts=grips))
         y = standing(body)
         y[:2] -= stretch * way[:2]
-        told, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
-        assert told.paradoxes == 0
+        found, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
+        assert found.paradoxes == 0
         moved = (history[-1, :2] - y[:2]) @ way[:2]
         if part < 1:
             assert abs(history[:, :2] - y[:2]).max() < 1e-8
-            assert told.peak_tilt < 1e-8
+            assert found.peak_tilt < 1e-8
         elif tips:
-            assert told.peak_tilt > 1e-4 and moved > 0
+            assert found.peak_tilt > 1e-4 and moved > 0
         else:
-            assert told.peak_tilt < 1e-8 and moved > 1e-5
+            assert found.peak_tilt < 1e-8 and moved > 1e-5
 
 
 @pytest.mark.parametrize("part", [0.95, 1.3])
 @pytest.mark.parametrize("is_round", [False, True])
 def test_a_cord_beside_the_middle_moves_what_stands_beyond_an_ellipse(is_round, part):
-    """Beside a moment friction bears less; an even pressure bears µ m g times the mean distance of the base's points."""
+    """Beside a moment friction bears less; an even pressure bears µ m g times the mean distance of the points."""
     mu, radius, aside, stretch = 0.5, 0.15, 0.1, 4e-3
     kind = {"round": True} if is_round else {"depth": 2 * radius}
     chest = Block(2 * radius, 0.2, 30.0, **kind)
@@ -292,13 +292,13 @@ def test_a_cord_beside_the_middle_moves_what_stands_beyond_an_ellipse(is_round, 
     body = kernel_body(replace(held, contacts=grips))
     y = standing(body)
     y[0] -= stretch
-    told, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
-    assert told.paradoxes == 0
+    found, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
+    assert found.paradoxes == 0
     if part < 1:
         assert abs(history[:, :2] - y[:2]).max() < 1e-8
     else:
         # its centre follows the cord, and it turns towards it
-        assert history[-1, 0] > y[0] + 1e-4 and told.turn < -1e-3
+        assert history[-1, 0] > y[0] + 1e-4 and found.turn < -1e-3
 
 
 @pytest.mark.parametrize(

@@ -245,8 +245,8 @@ def run_case(
         history=history,
     )
     kept = ~np.isnan(history[:, 0])
-    told = _outcome(body, found.outs[0], found.counts[0], found.ends[0])
-    return told, history[kept]
+    single = _outcome(body, found.outs[0], found.counts[0], found.ends[0])
+    return single, history[kept]
 
 
 class Found(NamedTuple):
