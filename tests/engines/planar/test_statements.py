@@ -41,6 +41,7 @@ with plain_library():
         Block,
         Bond,
         Column,
+        ImpactLaw,
         SlidingPendulum,
         Tie,
         Wall,
@@ -819,6 +820,8 @@ def test_a_slack_tie_that_turns_back_near_its_length_is_looked_at(
     w.q1, w.v1[:3] = w.q, (-late, 0.0, 0.0)
     may = near > 0 or (bracket and near < 0)
     assert ties.turns_back(p, w, 0.02) == (may and early != late)
+    # its ends on the ground neither part nor come closer
+    assert step.comes_near(p, w, 0.02) == (may and early != late)
 
 
 def test_a_low_wall_is_met_by_a_corner_below_its_top_and_by_its_edge_above():
@@ -1171,11 +1174,184 @@ def test_a_plate_and_its_load_move_as_one_coordinate_and_its_books_close(kind):
     felt = carried._acceleration(w, 1.0, h)
     assert felt == pytest.approx(rates(h, known)[1], rel=1e-8)
     w.rest[:] = (1.0, 0.0, 0.0)
+    state = w.q.copy(), w.v.copy()
     assert carried.carry_along(p, w, stretch)
     for first in (0, 3):
         assert w.q[first] - p.standing[first] == pytest.approx(known[0], rel=1e-9)
         assert w.v[first : first + 3] == pytest.approx((known[1], 0.0, 0.0), rel=1e-9)
     assert carried.carried_energies(p, w, stretch) == pytest.approx(known[2:], rel=1e-7)
+    # a step of the whole column goes there too
+    w.q, w.v = state
+    w.whole[0] = support.GUIDED
+    solve.look_at(p, w, w.q)
+    assert solve.solve_motion(p, w, w.q, w.v, RIGHT, UP)
+    w.a[:] = w.out
+    step.start_step(p, w)
+    energies = step.take_step(p, w, stretch, True)
+    assert energies == pytest.approx(known[2:], rel=1e-7)
+    for first in (0, 3):
+        assert w.q1[first] - p.standing[first] == pytest.approx(known[0], rel=1e-9)
+        assert w.v1[first : first + 3] == pytest.approx((known[1], 0.0, 0.0), rel=1e-9)
+
+
+def test_a_plate_is_carried_with_what_sticks_flat_on_it_and_is_held_by_nothing_else():
+    stack = as_system(Column((Block(0.4, 0.3, 30.0), Block(0.3, 0.6, 20.0))))
+    tie = Tie((0.0, 0.0, 0.6), (2.0, 0.0, 0.9), 500.0, slack=0.02)
+    wall = Wall(2.0, 0.0)
+
+    def carries(*holders, supported=True, **changed):
+        held = hold(stack, *holders, support=SPRING if supported else None)
+        p, w = plain(system_record(held, G)), plain(working_memory())
+        w.closed[: p.count], w.slides[0] = 1, 1
+        for name, (at, value) in changed.items():
+            w[name][at] = value
+        return bool(carried.is_carried(p, w))
+
+    assert carries()
+    assert not carries(supported=False)
+    assert not carries(tie)
+    assert carries(wall)
+    assert not carries(wall, closed=((3, 0), 1))
+    assert carries(slides=(0, -1))
+    assert not carries(slides=(0, 0))
+    for k in (1, 2):
+        assert not carries(slides=(k, 1))
+        for end in (0, 1):
+            assert not carries(closed=((k, end), 0))
+
+
+def test_ties_act_while_one_is_taut_or_pushed_or_a_spring_is_there():
+    block = as_system(Block(0.4, 1.0, 80.0))
+    made = [
+        Tie((0.1, 0.0, 0.9), (x, 0.0, 0.5), 4e3, slack=0.05, bracket=True)
+        for x in (0.9, -0.7, 0.8)
+    ]
+    p, w = plain(system_record(hold(block, *made), G)), plain(working_memory())
+    for states in itertools.product(
+        (ties.SLACK, ties.TAUT, ties.PUSHED, ties.BROKEN), repeat=3
+    ):
+        w.taut[:3] = states
+        expected = bool({ties.TAUT, ties.PUSHED} & set(states))
+        assert bool(ties.is_any_taut(p, w)) == expected
+    p, w = plain(system_record(hold(block, support=SPRING), G)), plain(working_memory())
+    assert ties.is_any_taut(p, w)
+
+
+def test_a_bond_is_broken_by_an_impulse_that_pulls_a_pad_or_shears_beyond_friction():
+    rng, seen = np.random.default_rng(21), set()
+    for _ in range(40):
+        state = drawn(rng, True, 2)
+        p, w, n = state.p, state.w, state.count
+        p.is_bonded[:n], p.bond_number[:n] = 1, range(n)
+        whole = rng.integers(0, 2, n)
+        w.whole[:n], p.bond_spread[:n] = whole, rng.uniform(0.1, 0.4, n)
+        w.closed[:n] = 1
+        w.normal[:n], w.shear[:n] = rng.normal(30, 10, (n, 2)), rng.normal(0, 20, n)
+        pulled = []
+        for k in range(n):
+            width = np.linalg.norm(np.subtract(*state.bodies[k].corners))
+            if k:
+                # along the face, where a corner is beyond it
+                first, last = (sight(state, rows(w.q, n), k, end) for end in (0, 1))
+                width = abs((last[6:8] - first[6:8]) @ first[2:4])
+            moment = (w.normal[k, 1] - w.normal[k, 0]) * width / 2
+            pressed = w.normal[k].sum()
+            least = pressed / 2 - abs(moment) / (2 * p.bond_spread[k])
+            pulled.append(least < 0 or abs(w.shear[k]) > p.static[k] * pressed)
+        breaks = whole.astype(bool) & pulled
+        assert bonds.break_pulled(p, w, 1.0) == breaks.any()
+        assert w.whole[:n].tolist() == (whole.astype(bool) & ~breaks).tolist()
+        # those without one count as broken here, as all are said to be bonded
+        assert bonds.count_broken(p, w) == n - w.whole[:n].sum()
+        w.outcome.breaking_time[:n] = np.nan
+        w.outcome.breaking_time[0] = 1.5
+        bonds.note_breaking(p, w, 2.0)
+        times = w.outcome.breaking_time[:n]
+        assert times[0] == 1.5
+        assert times[1:].tolist() == pytest.approx(
+            np.where(w.whole[1:n], np.nan, 2.0), nan_ok=True
+        )
+        seen |= set(zip(whole.tolist(), breaks.tolist(), strict=True))
+    assert len(seen) == 3
+
+
+def test_rows_of_contacts_are_what_each_coordinate_moves_there():
+    """Normal and tangent of both ends, and a couple between the bodies; without forces all fall and ties draw."""
+    rng, seen = np.random.default_rng(22), 0
+    for impact in (False, True):
+        for _ in range(15):
+            state = drawn(rng, impact, 0)
+            p, w, n = state.p, state.w, state.count
+            w.touching[:n] = w.closed[:n]
+            w.basis[:] = w.free[:] = 7.0
+            prepare(p, w, Trial(RIGHT, UP, impact, p.weight, G))
+            q, v, still = rows(w.q, n), rows(w.v, n), np.zeros((n, 3))
+            fall = np.tile((-RIGHT, -UP - G, 0.0), (n, 1))
+            for k in range(n):
+                # three coordinates of the body below, if there is one, and of the body above
+                below = [0.0, 0.0, -1.0] if k else [0.0] * 3
+                assert (
+                    w.basis[k, 4, 3 * (k == 0) :].tolist()
+                    == ([*below, 0.0, 0.0, 1.0][3 * (k == 0) :])
+                )
+                for end in np.flatnonzero(w.touching[k]).tolist():
+                    for unit in np.eye(3 * n)[max(0, 3 * k - 3) : 3 * k + 3]:
+                        moved = rates(state, q, unit.reshape(n, 3), still, k, end)[0]
+                        at = int(unit.argmax()) - 3 * k + 3
+                        found = w.basis[k, 2 * end : 2 * end + 2, at]
+                        assert found == pytest.approx(moved[::-1], abs=1e-5)
+                    velocity, bent = rates(state, q, v, fall, k, end)
+                    expected = velocity if impact else bent
+                    found = w.free[k, 2 * end : 2 * end + 2]
+                    assert found == pytest.approx(expected[::-1], abs=1e-3)
+                    seen += 1
+    assert seen > 50
+
+
+def test_laws_of_impacts_are_looked_for_at_contacts_and_walls(monkeypatch):
+    """Plastic is what has none: there ends that are pushed may not part."""
+    told = []
+    monkeypatch.setattr(integrate, "breaks_a_law", lambda *given: told.append(given[3]))
+    stack = as_system(Column((Block(0.4, 0.3, 30.0), Block(0.3, 0.6, 20.0))))
+    walls_of = [Wall(2.0, 0.0), Wall(2.0, np.pi)]
+    p, w = plain(system_record(hold(stack, *walls_of), G)), plain(working_memory())
+    integrate._is_unlawful(p, w, 1e-6)
+    assert told.pop()
+    for k, end in itertools.product((0, 1), (0, 1)):
+        kept, p.law[k, end] = p.law[k, end], 2
+        integrate._is_unlawful(p, w, 1e-6)
+        assert not told.pop()
+        p.law[k, end] = kept
+    for k in (2, 3):
+        p.bounce[k] = 0.4
+        integrate._is_unlawful(p, w, 1e-6)
+        assert not told.pop()
+        p.bounce[k] = 0.0
+
+
+@pytest.mark.parametrize("law", ["position", "couple", "ratio"])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_block_comes_down_by_the_law_of_its_contact(law, side):
+    """Its rate is a part of the one before: of that by momentum or its own, as far as no energy is gained."""
+    rng, gave_way = np.random.default_rng(23), 0
+    for number in range(8):
+        block = Block(rng.uniform(0.2, 0.4), 1.0, 80.0)
+        h, b = 0.5, block.width / 2
+        own = 1 - 1.5 * b**2 / (h**2 + b**2)
+        # Housner (1963); more than it came with it cannot have
+        value = own * rng.uniform(0.8, 0.95) if number else 1.01
+        system = with_contacts(block, [5.0], [ImpactLaw(law, value, value)])
+        p, w = plain(system_record(system, G)), plain(working_memory())
+        w.drive[:], w.kind[:] = -1, 1
+        w.q, w.v = posed(p, [-side * 1e-13], [side * 0.4])
+        w.old_closed[0] = w.closed[0] = side > 0, side < 0
+        w.touching[0] = 1
+        solve.look_at(p, w, w.q)
+        impacts.strike(p, w, 0.0, 0.0, 0.0)
+        gave_way += w.outcome.given_way
+        expected = min(value, 1.0)
+        assert w.v[2] == pytest.approx(side * 0.4 * expected, rel=1e-6)
+    assert gave_way == 1
 
 
 def test_witnesses_see_the_same_in_impacts_and_in_what_no_contact_could_have_done():

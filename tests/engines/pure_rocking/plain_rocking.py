@@ -20,6 +20,7 @@ with plain_library():
         impact,
         record,
         roots,
+        single,
         taylor,
     )
     from rockfrag.engines.pure_rocking.kernels import equations as eq
@@ -39,6 +40,7 @@ __all__ = [
     "plain",
     "record",
     "roots",
+    "single",
     "stacks",
     "state_of",
     "taylor",

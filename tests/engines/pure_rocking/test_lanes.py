@@ -3,19 +3,25 @@
 Kernels are called one by one, as plain Python.
 """
 
+import itertools
 import math
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from rockfrag import Block, Stack
+from rockfrag.simulation.options import system_of
+
 from ...mutants.plain import plain_library
-from ...oracle.rocking_model import pivots
+from ...oracle.rocking_model import Model, pivots
 from ..planar.cases import G
 from .plain_rocking import (
     STATES,
+    body_record,
     chatter,
     drawn_motion,
     eq,
@@ -27,7 +33,7 @@ from .plain_rocking import (
 )
 
 with plain_library():
-    from rockfrag.engines.pure_rocking.ensembles import _extremes
+    from rockfrag.engines.pure_rocking.ensembles import _extremes, write_rocking
     from rockfrag.engines.pure_rocking.kernels.lanes import (
         block,
         series,
@@ -37,6 +43,7 @@ with plain_library():
         stack_two,
     )
     from rockfrag.engines.pure_rocking.kernels.lanes import case as cases
+    from rockfrag.outcomes.outcomes import empty_outcomes
 
 H = 0.004  # interval of the samples [s]
 
@@ -467,3 +474,195 @@ def test_two_rotations_come_to_a_contact_event_with_ground_and_weight_of_that_in
     assert (case.tau, case.ground, case.weight) == pytest.approx(
         (at, ground(at), weight(at))
     )
+
+
+def test_both_rotations_are_measured_by_their_critical_angles_and_the_speeds_there():
+    """The pedestal with what it carries in that contact state, and the statue on a pedestal that stands."""
+    for _, body, _ in stacks(29, 6):
+        _, two, _ = constants_of(body)
+        for c in [c for c in STATES if 0 not in c]:
+            at = two[eq.number_of(*c)]
+            for k, state in enumerate((c, (0, c[1]))):
+                critical, vx, vy, inertia = eq.balance(body, *state)
+                frequency2 = G * math.hypot(vx, vy) / inertia
+                speed = 1.0 / (critical**2 * frequency2 * H**2)
+                assert at[f"per_angle{k + 1}"] == pytest.approx(c[k] / critical)
+                assert at[f"per_speed{k + 1}"] == pytest.approx(speed)
+
+
+def test_a_fall_is_as_far_from_balance_as_the_speed_that_a_still_ground_leaves():
+    """Before balance by ψ'' = κ sin ψ up to there, beyond it by what it has; never more than before."""
+    kappa, critical = 0.02, 0.3
+    for psi, before in ((0.2, 9.0), (0.2, 0.1), (-0.15, 9.0), (-0.15, 0.05)):
+        lane = plain(np.zeros(1, block.LANE)[0])
+        i = 5
+        lane.angle[i], lane.kappa[i] = critical, kappa
+        omega = -0.05
+        lane.was_psi[i], lane.was_omega[i] = psi, omega
+        lane.was_low[i], lane.was_fast[i], lane.was_near[i] = 0.4, 0.07, 0.5
+        lane.low[i], lane.fast[i], lane.near[i] = 0.1, 0.2, 0.3
+        tally = SimpleNamespace(unstable_distance=before)
+        if psi > 0:
+
+            def upright(_, y):
+                return y[0]
+
+            upright.terminal = True
+            path = solve_ivp(
+                lambda _, y: (y[1], kappa * math.sin(y[0])),
+                (0.0, 100.0),
+                (psi, omega),
+                events=upright,
+                rtol=1e-10,
+                atol=1e-12,
+            )
+            at, rate = path.y_events[0][0]
+        else:
+            at, rate = psi, omega
+        distance = math.hypot(at, rate / math.sqrt(kappa)) / critical
+        block._fall(lane, i, tally)
+        assert tally.unstable_distance == pytest.approx(min(before, distance))
+        assert lane.fell[i] == 1
+        # without what the step would have reached
+        assert (lane.low[i], lane.fast[i], lane.near[i]) == (0.4, 0.07, 0.5)
+    # what does not get as far as balance on a still ground has no distance from it
+    lane.was_psi[i], lane.was_omega[i] = 0.2, -1e-3
+    block._fall(lane, i, tally)
+    assert tally.unstable_distance == 0.0
+
+
+def test_what_kernels_say_of_cases_is_written_by_systems_and_bodies():
+    """A lone body is the kernels' second; of what fell the peak is infinite, and nothing slips."""
+    rng, shape = np.random.default_rng(30), (3, 2, 2)
+    names = [("vase",), ("pedestal", "bust"), ("urn",)]
+    into = empty_outcomes(names, np.ones((2, 2)))
+    found = np.zeros(shape, cases.OUTCOME)
+    for name in ("peak1", "peak2", "unstable_distance"):
+        found[name] = rng.uniform(size=shape)
+    for name in ("impacts", "given_way"):
+        found[name] = rng.integers(0, 9, shape)
+    found["fallen"][0, 1, 0] = found["fallen"][1, 0, 1] = 2
+    found["fallen"][1, 1, 1] = 1
+    write_rocking(into, found)
+    for at in np.ndindex(*shape):
+        two = at[0] == 1
+        fallen = int(found["fallen"][at])
+        number = fallen if two else int(fallen > 0)
+        assert into.overturned[at] == (fallen > 0)
+        assert into.overturned_body[at] == number
+        peaks = [found["peak1"][at], found["peak2"][at]][1 - two :]
+        for k, peak in enumerate(peaks):
+            expected = math.inf if number == k + 1 else peak
+            assert into.peak_rotation[at][k] == expected
+            assert into.slip[at][k] == into.peak_slip[at][k] == 0.0
+        for name in ("impacts", "given_way", "unstable_distance"):
+            assert getattr(into, name)[at] == found[name][at]
+
+
+def rocking_alone(rng, body, c, gap):
+    """A lane of what turns alone over a step in which its contact opens by this polynomial."""
+    lane = plain(np.zeros(1, stack_one.LANE)[0])
+    side = sum(c)
+    angle = np.zeros(8)
+    angle[: gap.degree() + 1] = side * gap.coef
+    left = rng.uniform(0.3, 1.0)
+    lane.was_left[0], lane.side[0] = left, side
+    lane.was_theta[0], lane.was_omega[0] = angle[0], angle[1] / left
+    lane.rates[:, 0] = angle[2:] * np.arange(2, 8)
+    lane.per_angle[0], lane.per_speed[0], lane.was_near[0] = side / 0.3, 4.0, 9.0
+    return lane
+
+
+def test_what_turns_alone_is_moved_to_its_contact_event_or_the_end_of_its_step(
+    monkeypatch,
+):
+    """Its state is that of its series there, the ground and the weight are linear in between."""
+    # the other contact holds
+    monkeypatch.setattr(stack_one, "least_hold", lambda *_: 1.0)
+    x, seen = Polynomial([0.0, 1.0]), set()
+    gaps = {"opens": 0.1 + 0.02 * x + 0.01 * x**3, "closes": 1e-3 * (0.6 - x)}
+    gaps["at the end"] = 1e-3 * (1.0 - x)
+    for rng, body, _ in stacks(31, 3):
+        ones, _, impacts = constants_of(body)
+        for c in [c for c in STATES if 0 in c]:
+            for kind, gap in gaps.items():
+                lane = rocking_alone(rng, body, c, gap)
+                lane.flag[0] = cases.QUIET if kind == "opens" else cases.CLOSES
+                lane.was_ground[0], lane.ground_end[0] = 0.01, 0.02
+                lane.was_weight[0], lane.weight_end[0] = 0.9, 1.1
+                case = plain(np.zeros(1, stack_case.CASE)[0])
+                case.c1, case.c2, case.interval, case.near = *c, H, 9.0
+                made = plain(np.zeros(1, taylor.SERIES)[0])
+                worker = SimpleNamespace(
+                    one=lane,
+                    series=[made],
+                    ones=ones.reshape(1, 9),
+                    impacts=impacts.reshape(1, 9),
+                    state=state_of((0, 0), (0, 0), (0, 0)),
+                )
+                ensemble = SimpleNamespace(bodies=[body])
+                motions = SimpleNamespace(vertical=np.zeros(0), samples=np.zeros(9))
+                # as if another contact event had to be ended by a general impact
+                case.contact_events, case.counted_sample = 10**6, 0
+                found = stack_case.contact_event_of_one(
+                    0, case, worker, ensemble, motions, G
+                )
+                at = 0.6 if kind == "closes" else 1.0
+                assert found == (
+                    kind != "opens" and c[0] != 0,
+                    kind != "opens" and c[1] != 0,
+                )
+                left = lane.was_left[0]
+                assert case.tau == pytest.approx(1.0 - left * (1.0 - at))
+                rate = sum(c) * gap.deriv()(at) / left
+                assert case.omega2 == pytest.approx(rate)
+                assert case.omega1 == pytest.approx(rate if c[1] == 0 else 0.0)
+                if kind == "opens":
+                    assert case.theta2 == pytest.approx(sum(c) * gap(1.0))
+                    assert case.impacts == 0
+                    continue
+                assert case.theta1 == case.theta2 == 0.0
+                assert case.impacts == 1
+                assert case.ground == pytest.approx(0.01 + 0.01 * at)
+                assert case.weight == pytest.approx(0.9 + 0.2 * at)
+                peak = case.peak1 if c[1] == 0 else case.peak2
+                assert peak == pytest.approx(0.0, abs=1e-12)
+                seen.add((c, kind))
+    assert len(seen) == 8
+
+
+def test_of_a_closing_and_a_contact_that_lets_go_before_the_first_is_taken():
+    """The ground grows from nothing to what the other contact cannot hold by the time of the closing, or later."""
+    rng, x, seen = np.random.default_rng(32), Polynomial([0.0, 1.0]), set()
+    slender = Stack(Block(0.3, 1.5, 360.0), Block(0.25, 0.3, 70.0, cg_offset=0.01))
+    squat = Stack(Block(0.6, 0.5, 360.0), Block(0.25, 0.8, 70.0, cg_offset=0.01))
+    for stack in (slender, squat):
+        body, model = plain(body_record(system_of(stack), False, G)), Model(stack, G)
+        one, _, _ = constants_of(body)
+        for c in [c for c in STATES if 0 in c]:
+            gap = 1e-5 * (0.5 - x)
+            lane = rocking_alone(rng, body, c, gap)
+            lane.was_left[0], lane.flag[0] = 1.0, cases.CLOSES
+            lane.was_weight[0] = lane.weight_end[0] = 1.0
+            made = plain(np.zeros(1, taylor.SERIES)[0])
+            made.one.angle[:2] = sum(c) * gap.coef
+            made.gap[:2] = gap.coef
+            for begin, end in itertools.product((0.0, 2.0, -2.0), (0.0, 30.0, -30.0)):
+                lane.was_ground[0], lane.ground_end[0] = begin, end
+
+                def margin(tau, c=c, gap=gap, ramp=(begin, end - begin), model=model):
+                    turns = np.array([c[0] != 0, True]) * sum(c)
+                    at, rate = gap(tau) * turns, gap.deriv()(tau) / H * turns
+                    pull = (ramp[0] + ramp[1] * tau, G)
+                    return min(model.margins(c, at, rate, pull).values())
+
+                if margin(0.0) < 0:
+                    continue
+                found = stack_one.next_contact_event(
+                    one[eq.number_of(*c)], lane, 0, made, G
+                )
+                lets_go = margin(0.5) < 0
+                first = brentq(margin, 0.0, 0.5) if lets_go else 0.5
+                assert found == (pytest.approx(first, abs=1e-9), lets_go)
+                seen.add((c, lets_go))
+    assert len(seen) == 8

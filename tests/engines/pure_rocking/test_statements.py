@@ -32,6 +32,7 @@ from .plain_rocking import (
     plain,
     record,
     roots,
+    single,
     stacks,
     state_of,
     taylor,
@@ -382,6 +383,48 @@ def test_a_contact_closes_at_the_first_root_of_its_opening():
     # what leaves zero without speed, upwards, comes back where its bend has it
     back = roots.crossing_time(np.array([0.0, 0.0, 1.0, -2.0, *4 * [0.0]]))
     assert back == pytest.approx(0.5)
+
+
+def test_the_first_of_two_openings_that_vanishes_is_the_one_that_closes():
+    """Of the ground's and the interface's, by the roots of their polynomials; both where they vanish together."""
+    rng, seen = np.random.default_rng(20), set()
+    series = plain(np.zeros(1, taylor.SERIES)[0])
+    for c in [c for c in STATES for _ in range(12)]:
+        at, bent = rng.uniform(0.1, 1.9, 2), rng.uniform(0, 0.5, 2)
+        if rng.uniform() < 0.2:
+            # without rounding
+            at[:], bent[:] = 0.55, 0.25
+        # each falls to nothing but once
+        openings = [
+            2.0**-10 * Polynomial([when, -1.0]) * Polynomial([1.0, more])
+            for when, more in zip(at, bent, strict=True)
+        ]
+        first = c[0] * openings[0] if c[0] else Polynomial([0.0])
+        relative = c[1] * openings[1] if c[1] else Polynomial([0.0])
+        for each, angle in ((series.one, first), (series.two, first + relative)):
+            each.angle[:] = 0.0
+            each.angle[: angle.degree() + 1] = angle.coef
+        found = single.first_closing(*c, series)
+        moments = [when if side else math.inf for side, when in zip(c, at, strict=True)]
+        when = min(moments)
+        if when > 1.0:
+            assert found == (roots.NEVER, False, False)
+        else:
+            assert found == (
+                pytest.approx(when),
+                moments[0] == when,
+                moments[1] == when,
+            )
+        seen.add(found[1:])
+    assert len(seen) == 4
+
+
+def test_sines_of_a_history_are_numpys():
+    angles = np.random.default_rng(21).normal(size=(3, 2))
+    sine, cosine = np.empty((2, 3, 2))
+    record.fill_sines(angles, sine, cosine)
+    assert sine == pytest.approx(np.sin(angles))
+    assert cosine == pytest.approx(np.cos(angles))
 
 
 def test_no_gap_that_closes_between_the_ends_of_a_step_is_passed_over():

@@ -138,8 +138,8 @@ def test_turned_or_seen_in_a_mirror_a_case_is_the_same_and_its_energy_balances(k
 
 @pytest.fixture
 def soon_over(monkeypatch):
-    """What happens on the ground at rest is followed for two intervals alone."""
-    monkeypatch.setattr(engine, "AFTER", 2 * COARSE)
+    """What happens on the ground at rest is followed for three intervals alone."""
+    monkeypatch.setattr(engine, "AFTER", 2.5 * COARSE)
 
 
 def slender(mass=2.0, holders=(), bond=None, friction=0.8):
@@ -161,7 +161,7 @@ def shove(level, count=10):
 
 
 def test_outcomes_of_a_grid_are_those_of_each_analysis_alone(soon_over):
-    """By the same names, at each of several scales; a body that falls has infinite peaks, one that does not none."""
+    """By the same names, at each of several scales; peaks of a body that falls are infinite."""
     systems, motions = (slender(), slender(friction=0.2)), (shove(5.0), shove(-4.0))
     scales = np.array([[0.2, 1.6], [1.7, 0.3]])
     cases = Cases(systems, motions, scales, Request(g=G))
@@ -195,6 +195,41 @@ def test_outcomes_of_a_grid_are_those_of_each_analysis_alone(soon_over):
     assert {(0, False), (0, True), (1, False)} <= seen
 
 
+def test_what_the_kernel_leaves_is_told_by_its_name():
+    rng, body = np.random.default_rng(1), kernel_body(slender())
+    outs, counts = rng.normal(size=(2, outcome.OUTCOME)), rng.integers(0, 9, (2, 9))
+    outs[:, outcome.FELL], outs[:, outcome.LEANS] = (0, 1), (1, 0)
+    outs[:, outcome.FALL_FIRST], outs[:, outcome.FALL_SECOND] = 2, -1
+    y = rng.normal(size=solid.SIZE)
+    found = engine.Found(outs, counts, np.tile(y, (2, 1)))
+    into = engine.empty_outcomes([("vase",)], np.ones((1, 2)))
+    engine._write(into, (0, 0), body, found)
+    assert into.leaning[0, 0].tolist() == [1, 0]
+    for k, (out, count) in enumerate(zip(outs, counts, strict=True)):
+        told = engine._outcome(body, out, count, y)
+        problems = count[limits.UNSOLVED] + count[limits.JAMS]
+        assert into.paradoxes[0, 0, k] == told.paradoxes == problems
+        assert into.several_modes[0, 0, k] == told.ambiguous == count[limits.AMBIGUOUS]
+        assert into.flights[0, 0, k] == told.flights == count[limits.FLIGHTS]
+        assert told.dissipated == (out[outcome.LOST], y[solid.FRICTION])
+        assert told.residual == out[outcome.ENERGY_BALANCE]
+        assert told.gained == out[outcome.GAINED]
+        assert told.beyond_friction == out[outcome.BEYOND]
+        assert told.fell_over == into.fell_over[0, 0, k, 0] == ["", "vertex 3"][k]
+    disc = RigidBody(1.0, np.diag([0.1, 0.1, 0.1]), (0, 0, 0.1), Circle(0.2), 0.2)
+    for rim, first, second, said in (
+        (0, 3, 0, "edge 1-4"),
+        (0, 0, 1, "edge 1-2"),
+        (0, 0, -1, "vertex 1"),
+        (0, -1, -1, "flight"),
+        (1, 5, -1, "rim"),
+        (1, -1, -1, "flight"),
+    ):
+        outs[1, outcome.FALL_FIRST], outs[1, outcome.FALL_SECOND] = first, second
+        fallen = kernel_body(System((disc,), (Contact(),))) if rim else body
+        assert engine._outcome(fallen, outs[1], counts[1], y).fell_over == said
+
+
 def test_a_history_tells_where_axis_and_base_are(soon_over):
     system, motion = slender(), shove(4.5, 8)
     response = engine.history(Case(system, motion, 1.2, Request(g=G)))
@@ -203,7 +238,8 @@ def test_a_history_tells_where_axis_and_base_are(soon_over):
     _, rows = engine.run_case(
         body, motion.accelerations, COARSE, 1.2, g=G, samples=len(table)
     )
-    assert len(table) == len(rows) >= len(motion.x.acceleration)
+    # it is not at rest yet
+    assert len(table) == len(rows) == len(motion.x.acceleration) + 4
     axes = np.array([attitude(row)[:, 2] for row in rows])
     assert table[["x_m", "y_m", "z_m"]].to_numpy() == pytest.approx(rows[:, :3])
     assert table[["axis_x", "axis_y"]].to_numpy() == pytest.approx(axes[:, :2])
