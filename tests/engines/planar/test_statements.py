@@ -6,7 +6,7 @@ Kernels are called one by one, as plain Python. Motion at a contact is the chang
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -23,6 +23,7 @@ with plain_library():
         bonds,
         carried,
         equations,
+        holding,
         integrate,
         routh,
         solve,
@@ -48,6 +49,7 @@ with plain_library():
         as_system,
         hold,
     )
+    from rockfrag.system.system import Start
 
 H = 1e-4  # step of differences [s]
 RIGHT, UP = 1.7, -0.8  # accelerations of the ground [m/s²]
@@ -1218,6 +1220,40 @@ def test_a_plate_is_carried_with_what_sticks_flat_on_it_and_is_held_by_nothing_e
         assert not carries(slides=(k, 1))
         for end in (0, 1):
             assert not carries(closed=((k, end), 0))
+
+
+def test_a_plate_is_put_under_all_bodies_and_what_an_earlier_response_left():
+    """It stands at its displacement; bodies begin as they were, raised by its height, which is next to none."""
+    left = Start((0.1, 0.2), (0.3, 0.4), ((0.01, 0.15), (0.02, 0.6)), 0.07)
+    stack = as_system(Column((Block(0.4, 0.3, 30.0), Block(0.3, 0.6, 20.0))))
+    for start in (None, left, replace(left, position=None)):
+        for support in (None, SPRING, DISH):
+            system = replace(stack, start=start, support=support)
+            found = holding.with_plate(system)
+            if support is None:
+                assert found is system
+                continue
+            assert [b.mass for b in found.bodies] == [20.0, 30.0, 20.0]
+            plate, first = found.bodies[:2]
+            assert plate.base.left == -plate.base.right < -10
+            assert plate.height < 1e-5 and first == system.in_plane().bodies[0]
+            slides = found.contacts[0].friction
+            assert slides == ((0.05, 0.05) if support is DISH else (0.0, 0.0))
+            if start is None:
+                assert found.start is None
+                continue
+            assert found.start.rotation == (0.0, 0.1, 0.2)
+            assert found.start.velocity == (0.0, 0.3, 0.4)
+            assert found.start.plate == 0.07
+            if start.position is None:
+                assert found.start.position is None
+                continue
+            at = np.array(found.start.position)
+            assert at[0] == pytest.approx((0.07, 0.0))
+            assert at[1:] == pytest.approx(np.array(left.position), abs=1e-5)
+            assert at[1:, 1] - np.array(left.position)[:, 1] == pytest.approx(
+                plate.height
+            )
 
 
 def test_ties_act_while_one_is_taut_or_pushed_or_a_spring_is_there():

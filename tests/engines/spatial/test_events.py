@@ -3,6 +3,7 @@
 Kernels are called one by one, as plain Python.
 """
 
+import itertools
 import math
 
 import numpy as np
@@ -973,6 +974,91 @@ def test_a_point_beside_an_edge_lands_where_the_turn_about_the_edge_takes_it():
         assert height(part) == pytest.approx(-1e-5, abs=1e-8)
         found += 1
     assert found > 2
+
+
+def test_the_error_of_a_turn_about_an_edge_is_the_last_term_of_its_velocity():
+    rng = np.random.default_rng(34)
+    for h in (0.01, 0.05):
+        body, s = uneven(rng), shaken(rng)
+        y = leaning(body, 0.1, math.atan2(*CORNERS[[3, 4]].mean(axis=0)[::-1]))
+        mode(s, 3, 4)
+        for _ in range(4):
+            gaps.close_gaps(body, y, rotation(y), s)
+        contacts.anchor_all(body, y, s)
+        gaps.settle(body, y, s)
+        error = step.attempt(body, 0.0, h, y, s)
+        velocity = np.polynomial.Polynomial(s.angle).deriv() / h
+        whole_one, short = velocity(1.0), velocity.cutdeg(velocity.degree() - 1)(1.0)
+        assert velocity.degree() == forces.HINGE_ORDER - 1
+        assert error == pytest.approx(abs(whole_one - short), rel=1e-3)
+        assert np.linalg.norm(s.new[10:13]) == pytest.approx(abs(whole_one))
+
+
+def test_friction_of_a_flat_face_acts_at_the_mean_distance_of_its_points():
+    """Two thirds of the radius of a disc, about its own centre."""
+    body, s = drum(), case()
+    feet = [3 + 8 * k for k in range(4)]
+    mode(s, *feet, slides=1)
+    assert forces.twist_of(body, s) == pytest.approx(2 / 3)
+    mode(s, *feet[:2], slides=1)
+    assert forces.twist_of(body, s) == 1.0
+    rng = np.random.default_rng(35)
+    body = uneven(rng)
+    mode(s, 0, 2, 4, slides=1)
+    # even pressure, by points of the base drawn at random
+    drawn = rng.uniform(-0.5, 0.5, (40_000, 2))
+    ends = np.array([*OUTLINE, OUTLINE[0]])
+    inside = np.ones(len(drawn), bool)
+    for (x, y), (u, v) in itertools.pairwise(ends):
+        inside &= (u - x) * (drawn[:, 1] - y) - (v - y) * (drawn[:, 0] - x) > 0
+    middle = drawn[inside].mean(axis=0)
+    mean = np.hypot(*(drawn[inside] - (0.03, -0.02)).T).mean()
+    mine = np.hypot(*CORNERS[[0, 2, 4]].T).mean()
+    assert np.hypot(*middle) < 0.1
+    assert forces.twist_of(body, s) * mine == pytest.approx(mean, rel=0.02)
+
+
+@pytest.mark.parametrize(("part", "meets"), [(0.9, True), (1.2, False)])
+@pytest.mark.parametrize("at", ["ground", "wall"])
+def test_what_comes_near_and_parts_again_within_a_step_is_looked_at(at, part, meets):
+    """A body that turns back at a constant acceleration comes nearer by u h/4 at most."""
+    rng, speed, h = np.random.default_rng(36), 0.8, 0.02
+    body, s = uneven(rng, Wall(1.0, 0.0)), case()
+    mode(s)
+    corners = [solid.WALLS + k for k in range(body.corners)]
+    y = leaning(body, 0.1, 0.3)
+    rows = rotation(y)
+    near = part * speed * h / 4
+    if at == "ground":
+        y[2] += near - min(solid.gap(body, y, rows[2], i) for i in range(6))
+        y[9] = -speed
+    else:
+        y[2] += 1.0
+        y[0] += min(solid.gap_of(body, y, rows, i) for i in corners) - near
+        y[7] = speed
+    s.new[:] = y
+    s.new[7:10] *= -1
+    assert step.dips(body, y, h, s) == meets
+    # what only comes, or only goes, does not
+    assert not step.dips(body, s.new.copy(), h, s)
+    s.new[:] = y
+    assert not step.dips(body, y, h, s)
+
+
+def test_a_round_body_that_tips_at_once_balances_its_energy():
+    """It begins under the ground of the first instant, which changes fast."""
+    body = drum(off=(0.0, 0.0), radius=0.1)
+    body.static = body.kinetic = 5.0
+    motion = np.array([[9.0, 2.0, 0.0], [-50.0, 30.0, 60.0], [0.0, 0.0, 0.0]])
+    y, s, out = upright(body), case(), np.zeros(outcome.OUTCOME)
+    history, peaks = np.zeros((3, 17)), np.zeros((3, 4))
+    ground.fill_peaks(motion, peaks)
+    whole.integrate(body, motion, peaks, 1.0, DT, G, 0, 1e-9, 1e-6, y, history, out, s)
+    assert history[0, 14] == 1
+    assert out[outcome.PEAK_TILT] > 1e-4
+    # but for the tilt of 1e-7 with which it begins to roll
+    tilt = rim.RIM_START * 0.1 * np.linalg.norm(motion[0] + (0.0, 0.0, G))
+    assert out[outcome.ENERGY_BALANCE] == pytest.approx(0.0, abs=3 * tilt)
 
 
 def test_the_error_of_a_step_about_a_contact_is_the_difference_of_the_pair():

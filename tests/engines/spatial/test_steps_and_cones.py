@@ -207,6 +207,106 @@ def test_impulses_obey_the_conditions_of_contact_with_coulombs_cone(touch):
     assert missing <= 2
 
 
+def small_system(rng, mu=0.4):
+    """Three contacts of a body, one of which slips a given way, with trial impulses."""
+    body, _, rows, _, s = struck(rng, (0, 2, 4), mu)
+    forces.fill_delassus(body, rows, s.which, 3, s.delassus)
+    s.grip[:3] = rng.uniform(0.2, 0.9, 3)
+    s.given[1], s.way[1] = 1, (0.6, -0.8)
+    x = rng.normal(0, 1, 12)
+    # some press and some do not
+    x[2:9:3] = rng.choice([-0.5, 0.5, 1.0], 3)
+    return s, x
+
+
+def test_residuals_of_a_set_are_those_of_alart_and_curnier_and_slopes_their_derivative():
+    """ϱ u_n, and P_t less its projection from P_t - ϱ u_t onto the disc of µ P_n; of what slips P_t + µ P_n d."""
+    rng, kinds = np.random.default_rng(57), set()
+    for mask in (0b111, 0b101, 0b110, 0b010, 0b001) * 4:
+        s, x = small_system(rng)
+        size, pace = cones.members(s, 3, mask), rng.uniform(0.5, 2.0)
+        kept = [k for k in range(3) if mask >> k & 1]
+        assert s.member[:size].tolist() == kept
+        at = [3 * k + c for k in kept for c in range(3)]
+        w, free = np.array(s.delassus)[np.ix_(at, at)], np.array(s.free)[at]
+
+        def expected(x, at=at, w=w, free=free, s=s, kept=kept, pace=pace):
+            u = free + w @ x[at]
+            found = np.empty(len(at))
+            for m, k in enumerate(kept):
+                push, slip = x[3 * k : 3 * k + 3], u[3 * m : 3 * m + 3]
+                found[3 * m + 2] = pace * slip[2]
+                if s.given[k]:
+                    found[3 * m : 3 * m + 2] = push[:2] + s.friction[k] * push[2] * (
+                        np.array(s.way[k])
+                    )
+                    continue
+                tried = push[:2] - pace * slip[:2]
+                most = s.grip[k] * max(push[2], 0.0)
+                length = np.hypot(*tried)
+                kinds.add((length > most, push[2] > 0))
+                found[3 * m : 3 * m + 2] = push[:2] - tried * min(1, most / length)
+            return found
+
+        out = np.zeros(12)
+        worst = cones.residuals(s, size, x, pace, out)
+        assert out[: 3 * size] == pytest.approx(expected(x))
+        assert worst == pytest.approx(np.abs(expected(x)).max() / pace)
+        cones.fill_slopes(s, size, x, pace)
+        h = 1e-6
+        for m, j in enumerate(at):
+            aside = h * np.eye(12)[j]
+            slope = (expected(x + aside) - expected(x - aside)) / (2 * h)
+            found = np.array(s.matrix)[: 3 * size, m]
+            assert found == pytest.approx(slope, abs=1e-6)
+    assert len(kinds) == 3
+
+
+def test_a_set_begins_with_each_contact_stopped_alone_and_sliding_the_way_it_came():
+    """Or that way turned, or its given way; what is not in the set is left alone."""
+    rng = np.random.default_rng(58)
+    for turned in (0.0, math.pi / 2, 2.0):
+        s, _ = small_system(rng)
+        s.free[8] = 0.3
+        s.impulse[:9] = 5.0
+        cones.start_sliding(s, 3, 0b110, turned)
+        assert not s.impulse[:3].any()
+        assert not s.impulse[6:9].any()
+        s.free[8] = -0.3
+        cones.start_sliding(s, 3, 0b110, turned)
+        c, sine = math.cos(turned), math.sin(turned)
+        for k in (1, 2):
+            came = np.array(s.free[3 * k : 3 * k + 3])
+            normal = -came[2] / s.delassus[3 * k + 2, 3 * k + 2]
+            way = np.array([[c, -sine], [sine, c]]) @ came[:2] / np.hypot(*came[:2])
+            grip = s.grip[k]
+            if s.given[k]:
+                way, grip = np.array(s.way[k]), s.friction[k]
+            expected = [*(-grip * normal * way), normal]
+            assert s.impulse[3 * k : 3 * k + 3] == pytest.approx(expected)
+
+
+def test_newtons_method_ends_where_residuals_vanish_or_are_good_enough(monkeypatch):
+    rng, solved = np.random.default_rng(59), 0
+    for _ in range(8):
+        s, _ = small_system(rng)
+        size, pace = cones.members(s, 3, 0b101), 0.7
+        cones.start_sliding(s, 3, 0b101, 0.0)
+        start, out = np.array(s.impulse), np.zeros(12)
+        if cones.newton(s, size, pace, 1e-12):
+            solved += 1
+            assert cones.residuals(s, size, s.impulse, pace, out) <= 1e-12 * 100
+        # out of steps: what is left may be some times as large
+        s.impulse[:] = start
+        worst = cones.residuals(s, size, s.impulse, pace, out)
+        with monkeypatch.context() as patch:
+            patch.setattr(cones, "NEWTON_STEPS", 0)
+            assert cones.newton(s, size, pace, worst / 90)
+            assert not cones.newton(s, size, pace, worst / 110)
+            assert (s.impulse == start).all()
+    assert solved > 4
+
+
 def test_of_outcomes_of_one_size_the_one_with_the_least_energy_is_taken():
     """A body that falls flat: one contact of four does, and several are tried."""
     rng, several = np.random.default_rng(56), 0
