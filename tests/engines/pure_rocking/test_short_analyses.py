@@ -7,10 +7,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
-from rockfrag import Block, Stack, overturns, simulate
+from rockfrag import Block, GroundMotion, Motion, Stack, overturns, simulate
+from rockfrag.base.units import GRAVITY
 from rockfrag.engines.contract import Case, Request
 from rockfrag.engines.pure_rocking.histories import SingleRun
+from rockfrag.records.velocity_steps import VelocitySteps
 from rockfrag.simulation.inputs import ground_motion
 from rockfrag.system import as_system
 
@@ -201,3 +204,69 @@ def test_an_ensemble_has_the_outcomes_and_peaks_of_the_plain_integrator(
                 if np.abs(theta).argmax() < 0.85 * len(theta):
                     assert found.peak_rotation[(*at, k)] <= peak + between
     assert told == expected
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_block_under_a_record_and_jumps_goes_where_moments_and_momentum_take_it(side):
+    """From one side to its fall there, beside SciPy: Δω = m (x Δw - z Δu)/I at each jump, and I θ'' the moment."""
+    block, dt = Block(0.04, 0.18, 1.0), 0.02
+    b, h, inertia = 0.02, 0.09, 4 / 3 * (0.02**2 + 0.09**2)
+    level = side * np.array([0.5, -0.8, 0.4, 0.3, 0.0])
+    lift = np.array([0.0, 0.6, -0.5, 0.3, 0.0])
+    times, right, up = [0.045, 0.097], side * np.array([-0.09, -0.08]), (0.05, -0.03)
+    ground = GroundMotion(
+        Motion(level, dt),
+        z=Motion(lift, dt),
+        steps=VelocitySteps(times, right, up),
+    )
+    found = simulate(block, ground, theta0=side * 0.15)
+
+    def arm(theta):
+        s, c = np.sin(theta), np.cos(theta)
+        return h * s - side * b * c, side * b * s + h * c
+
+    def moment(t, y):
+        x, z = arm(y[0])
+        a, w = (
+            np.interp(t, dt * np.arange(5), each, right=0) for each in (level, lift)
+        )
+        return y[1], (x * (GRAVITY + w) - z * a) / inertia
+
+    def fallen(t, y):
+        return side * y[0] - np.pi / 2
+
+    fallen.terminal = True
+    y, at, demand, energies = np.array([side * 0.15, 0.0]), 0.0, [], []
+    compared = 0
+    steps = found.contact_events[found.contact_events["kind"] == "velocity step"]
+    assert steps["time"].to_numpy() == pytest.approx(times)
+    for end, du, dw in zip([*times, 2.0], [*right, 0], [*up, 0], strict=True):
+        path = solve_ivp(
+            moment,
+            (at, end),
+            y,
+            events=fallen,
+            dense_output=True,
+            rtol=1e-10,
+            atol=1e-12,
+            max_step=dt / 4,
+        )
+        # not the instants of the jumps themselves
+        inside = (found.time > at + 1e-9) & (found.time < path.t[-1] - 1e-9)
+        compared += inside.sum()
+        theta, omega = path.sol(found.time[inside])
+        assert found.theta[inside, 0] == pytest.approx(theta, abs=1e-7)
+        assert found.omega[inside, 0] == pytest.approx(omega, abs=1e-5)
+        at, y = end, path.y[:, -1]
+        x, z = arm(y[0])
+        change = (x * dw - z * du) / inertia
+        y[1] += change
+        if du:
+            normal = dw - x * change
+            demand.append(abs(du + z * change) / normal if normal > 0 else np.inf)
+            energies.append(inertia * y[1] ** 2 / 2)
+    assert found.overturned and compared > 8
+    assert found.overturning_time == pytest.approx(path.t[-1], abs=2 * dt)
+    assert steps["energy_after"].to_numpy() == pytest.approx(energies, rel=1e-6)
+    assert found.friction_demand[0] >= max(demand) * (1 - 1e-6)
+    assert found.energy["residual"].abs().max() < 1e-6 * found.energy["kinetic"].max()
