@@ -489,6 +489,15 @@ def test_margins_of_a_motion_are_gaps_forces_slips_and_turns_over_their_units():
     assert len(seen) == 8
 
 
+def test_a_stretch_of_time_is_cut_in_two():
+    """Its ground is linear over it; the second part begins where the first one ends."""
+    whole = step.Stretch(0.04, 1.5, -0.5, 2.0, 3.0)
+    first, rest = step.beginning(whole, 0.3), step.rest_of(whole, 0.3)
+    assert first == pytest.approx((0.012, 1.5, -0.5, 0.6, 0.9))
+    assert rest == pytest.approx((0.028, 2.1, 0.4, 1.4, 2.1))
+    assert step.ground_at(first, 1.0) == pytest.approx((rest.ah, rest.av))
+
+
 def test_what_slides_off_its_face_or_turns_too_far_falls():
     stack = Column((Block(0.4, 0.2, 30.0), Block(0.3, 0.6, 20.0)))
     p = plain(system_record(as_system(stack), G))
@@ -1051,6 +1060,38 @@ def test_what_touches_is_shut_by_moving_all_above_it_and_goes_on_without_parting
     assert shut > 30
 
 
+def test_of_what_falls_the_contact_that_is_open_furthest_has_parted():
+    rng, w = np.random.default_rng(26), plain(working_memory())
+    for _ in range(20):
+        theta = rng.normal(0, 0.5, 4)
+        w.q[2:12:3] = theta
+        apart = np.abs(np.diff(theta, prepend=0.0))
+        for body in range(4):
+            expected = 1 + np.argmax(apart[: body + 1])
+            assert integrate._parted(w, body) == expected
+
+
+def test_what_is_held_lies_still_where_it_neither_moves_nor_accelerates():
+    column = as_system(Column((Block(0.4, 0.3, 30.0), Block(0.3, 0.6, 20.0))))
+    for holders, held in (((Wall(0.5, 0.0),), True), ((), False)):
+        p = plain(system_record(hold(column, *holders), G))
+        for place in range(6):
+            for record in ("v", "a"):
+                for part, still in ((0.9, True), (1.1, False)):
+                    w = plain(working_memory())
+                    unit = p.speed if record == "v" else G
+                    w[record][place] = -part * 1e-9 * unit
+                    assert integrate._lies_still(p, w) == (still and held)
+                    # a column at rest stays, and so does this
+                    w.is_stale = 0
+                    assert integrate._stays(p, w) == (still and held)
+                    w.is_stale = 1
+                    assert not integrate._stays(p, w)
+                    w.resting = 1
+                    assert integrate._stays(p, w)
+            assert integrate._fastest(p, w) == pytest.approx(abs(w.v[place]))
+
+
 def test_kinds_of_contact_events_are_told_apart():
     names = "CHANGE IMPACT PARADOX FALLEN PASSING AT_WALL TIED BROKEN"
     kinds = [getattr(integrate, name) for name in names.split()] + [VELOCITY_STEP]
@@ -1256,6 +1297,45 @@ def test_a_plate_is_put_under_all_bodies_and_what_an_earlier_response_left():
             )
 
 
+@pytest.mark.parametrize("kind", ["spring", "dish"])
+@pytest.mark.parametrize("part", [0.97, 1.03])
+def test_a_plate_swings_on_if_its_load_stands_where_it_turns_back(kind, part):
+    """At an amplitude A it is accelerated by ω² A, about where its spring is at rest; b/h or friction bears it."""
+    # which does not yield
+    strong = replace(SPRING, strength=5e5, yield_displacement=100.0)
+    isolator = strong if kind == "spring" else replace(DISH, friction=0.0)
+    for width, rough, plastic, told in (
+        (0.4, 0.9, 0.003, "tips"),
+        (0.9, 0.3, -0.003, "slides"),
+    ):
+        block = with_contacts(Block(width, 0.8, 80.0), [rough])
+        p = plain(system_record(hold(block, support=isolator), G))
+        w = plain(working_memory())
+        w.q, w.drive[:], w.kind[:], w.closed[:2] = p.standing, -1, 1, 1
+        w.whole[0], w.slides[0], w.outcome.stroke[:] = support.GUIDED, 1, 0.0
+        square, middle = G / 1.5, 0.0
+        if kind == "spring":
+            w.plastic = plastic
+            rise = p.spring_rise
+            square = (p.spring_stiffness + rise) / 100.0
+            middle = rise * plastic / (p.spring_stiffness + rise)
+        most = (width / 0.8 if told == "tips" else rough) * G
+        amplitude = part * most / square
+        w.q[[0, 3]] += middle + 0.6 * amplitude
+        w.v[[0, 3]] = 0.8 * amplitude * math.sqrt(square)
+        integrate._rest_margins(p, w)
+        swings = carried.swings_on(p, w)
+        assert swings == (part < 1)
+        stroke = w.outcome.stroke[p.support_number]
+        expected = abs(middle) + amplitude if swings else 0.0
+        assert stroke == pytest.approx(expected)
+        # friction, or a spring that yields, would end it
+        kept, p.kinetic[0] = p.kinetic[0], 0.01
+        assert not carried.swings_on(p, w)
+        p.kinetic[0], w.yields = kept, 1
+        assert not carried.swings_on(p, w)
+
+
 def test_ties_act_while_one_is_taut_or_pushed_or_a_spring_is_there():
     block = as_system(Block(0.4, 1.0, 80.0))
     made = [
@@ -1342,6 +1422,38 @@ def test_rows_of_contacts_are_what_each_coordinate_moves_there():
                     assert found == pytest.approx(expected[::-1], abs=1e-3)
                     seen += 1
     assert seen > 50
+
+
+def test_ties_and_springs_draw_what_touches_as_they_draw_its_bodies():
+    rng = np.random.default_rng(25)
+    block = as_system(Block(0.4, 1.0, 80.0))
+    for impact, kind in itertools.product((False, True), ("ties", "spring")):
+        p, w = tied(rng, False)
+        if kind == "spring":
+            p = plain(system_record(hold(block, support=SPRING), G))
+            w = plain(working_memory())
+            w.q[:6] = p.standing[:6]
+            w.q[[0, 3]] += 0.004
+        w.touching[: p.count] = w.kind[:] = 1
+        solve.look_at(p, w, w.q)
+        trial, pulled = Trial(RIGHT, UP, impact, p.weight, G), np.zeros(12)
+        w.taut[:2] = ties.TAUT
+        ties.fill_tie_accelerations(p, w, w.q, w.v)
+        pulled[: 3 * p.count] = w.drift[: 3 * p.count]
+        assert np.abs(pulled).max() > 0.01
+        w.drift[:] = 5.0
+        prepare(p, w, trial)
+        drawn_by = np.array(w.free[: p.count])
+        # without them
+        w.taut[:2] = ties.SLACK
+        p.spring_stiffness = p.spring_rise = 0.0
+        prepare(p, w, trial)
+        for k in range(p.count):
+            first = 0 if k else 3
+            both = pulled[3 * k - 3 + first : 3 * k + 3]
+            expected = w.basis[k, :4, first:] @ both
+            found = drawn_by[k, :4] - w.free[k, :4]
+            assert found == pytest.approx(expected * (not impact), abs=1e-9)
 
 
 def test_laws_of_impacts_are_looked_for_at_contacts_and_walls(monkeypatch):

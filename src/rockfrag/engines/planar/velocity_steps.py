@@ -187,6 +187,9 @@ class Between:
         self.spent["work"] += kinetic - self._kinetic(old)
         self.work["outcome"]["paradoxes"] -= int(jammed.sum())
         self._add(piece.begin)
+        # no step sees the rates with which bodies set out from a jump
+        fastest = self.outcome["peak_velocity"][:count]
+        np.maximum(fastest, np.abs(self.state[1, 2 : 3 * count : 3]), out=fastest)
         part.contact_events = np.concatenate([opening, contact_events])
         part.samples = part.samples[:0] if before is None else before
         size = part.samples.size
