@@ -36,7 +36,12 @@ with plain_library():
     from rockfrag.engines.planar import impact as impacts
     from rockfrag.engines.planar.engine import VELOCITY_STEP
     from rockfrag.engines.planar.records import posed, system_record, working_memory
-    from rockfrag.engines.planar.search import Trial, prepare, try_mode
+    from rockfrag.engines.planar.search import (
+        Trial,
+        _change_to_neighbour,
+        prepare,
+        try_mode,
+    )
     from rockfrag.system import (
         BilinearIsolator,
         Block,
@@ -1454,6 +1459,62 @@ def test_ties_and_springs_draw_what_touches_as_they_draw_its_bodies():
             expected = w.basis[k, :4, first:] @ both
             found = drawn_by[k, :4] - w.free[k, :4]
             assert found == pytest.approx(expected * (not impact), abs=1e-9)
+
+
+def test_a_neighbour_of_a_mode_differs_in_one_thing_that_may_change():
+    """An end that touches opens or closes, and what is closed slides otherwise, if nothing else gives its way."""
+    w, seen = plain(working_memory()), set()
+    trials = [Trial(0.0, 0.0, impact, 1.0, G) for impact in (False, True)]
+    names = itertools.product((0, 1), (0, 1), (0, 1), (-1, 0, 1), (-1, 1), (0, 1))
+    for trial, (left, right, whole, moves, drive, touch) in itertools.product(
+        trials, names
+    ):
+        for what in range(5):
+            k = 1
+            w.closed[:] = w.slides[:] = w.moves[:] = w.whole[:] = 0
+            w.closed[k], w.touching[k] = (left, right), (1, touch)
+            w.whole[k], w.moves[k], w.drive[k] = whole, moves, drive
+            changes = _change_to_neighbour(w, trial, k, what)
+            seen.add(bool(changes))
+            given = 0 if trial.impact else moves
+            if what < 2:
+                may = not whole and drive < 0 and (1, touch)[what] == 1
+                ends = [left, right]
+                ends[what] = 1 - ends[what] if may else ends[what]
+                assert changes == may
+                assert w.closed[k].tolist() == ends
+                begins = may and not (left or right)
+                assert w.slides[k] == (given if begins else 0)
+                continue
+            way = what - 3
+            may = not whole and (left or right) and given in (0, way)
+            assert bool(changes) == bool(may)
+            assert w.slides[k] == (way if may else 0)
+            assert w.closed[k].tolist() == [left, right]
+    assert seen == {False, True}
+
+
+def test_beside_a_wall_only_what_is_slow_can_be_held_at_once():
+    """A block that slides along the ground stops at its wall by no more than a slow speed."""
+    block = as_system(Block(0.4, 1.0, 80.0))
+    p = plain(system_record(hold(block, Wall(0.2, 0.0, friction=0.3)), G))
+    w = plain(working_memory())
+    w.q, w.drive[:], w.kind[:], w.closed[0], w.slides[0] = p.standing, -1, 1, 1, 1
+    w.slides[1] = 1
+    solve.look_at(p, w, w.q)
+    for still in (0.0, 1e-4):
+        most = impacts.SHUT * max(still, impacts.STILL * p.speed)
+        for part, holds in ((0.9, True), (1.1, False)):
+            w.closed[1], w.v[0] = 0, part * most
+            # no wall: all can be held
+            assert impacts._can_hold(p, w, still)
+            w.closed[1, 0] = 1
+            assert impacts._can_hold(p, w, still) == holds
+            w.v[0] = -part * most
+            assert impacts._can_hold(p, w, still) == holds
+    # what sticks to the ground has nothing left that the wall could hold
+    w.v[0], w.slides[0] = 0.0, 0
+    assert not impacts._can_hold(p, w, 1.0)
 
 
 def test_laws_of_impacts_are_looked_for_at_contacts_and_walls(monkeypatch):

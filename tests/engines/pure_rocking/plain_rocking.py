@@ -24,6 +24,8 @@ with plain_library():
         taylor,
     )
     from rockfrag.engines.pure_rocking.kernels import equations as eq
+    from rockfrag.engines.pure_rocking.kernels import laws as kernel_laws
+    from rockfrag.laws import laws
 
 # what is imported plain is so once: modules of tests take it from here
 __all__ = [
@@ -37,6 +39,8 @@ __all__ = [
     "drawn_motion",
     "eq",
     "impact",
+    "kernel_laws",
+    "laws",
     "plain",
     "record",
     "roots",

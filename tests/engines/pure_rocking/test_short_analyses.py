@@ -11,7 +11,8 @@ from scipy.integrate import solve_ivp
 
 from rockfrag import Block, GroundMotion, Motion, Stack, overturns, simulate
 from rockfrag.base.units import GRAVITY
-from rockfrag.engines.contract import Case, Request
+from rockfrag.engines.contract import Case, Cases, Request
+from rockfrag.engines.pure_rocking import histories
 from rockfrag.engines.pure_rocking.histories import SingleRun
 from rockfrag.records.velocity_steps import VelocitySteps
 from rockfrag.simulation.inputs import ground_motion
@@ -270,3 +271,41 @@ def test_a_block_under_a_record_and_jumps_goes_where_moments_and_momentum_take_i
     assert steps["energy_after"].to_numpy() == pytest.approx(energies, rel=1e-6)
     assert found.friction_demand[0] >= max(demand) * (1 - 1e-6)
     assert found.energy["residual"].abs().max() < 1e-6 * found.energy["kinetic"].max()
+
+
+def test_cases_one_by_one_are_told_as_their_histories_are(monkeypatch):
+    """Two motions and two scales, of bodies with and without a pedestal, with the forces that are asked for."""
+    shaking_of = histories.shaking_of
+
+    def short_one(case, g):
+        # what happens on the ground at rest takes longest
+        return shaking_of(case, g)._replace(free_samples=0)
+
+    monkeypatch.setattr(histories, "shaking_of", short_one)
+    bodies = (LONE[0][0], PILES[0][0])
+    level = 6.0 * np.sin(np.arange(12) * 0.9)
+    level[-1] = 0.0
+    motions = ground_motion(level, DT), ground_motion(-0.8 * level[:9], 0.03)
+    systems = tuple(as_system(body) for body in bodies)
+    grid = Cases(
+        systems, motions, np.array([[0.7, 1.1], [0.9, 1.2]]), Request(forces=True)
+    )
+    found = histories.run(grid)
+    for at in np.ndindex(*grid.shape):
+        i, j, k = at
+        case = Case(systems[i], motions[j], float(grid.scales[j, k]), grid.request)
+        alone = histories.SingleRun(case).summary
+        two = systems[i].count == 2
+        assert found.impacts[at] == alone["impacts"]
+        assert found.overturned[at] == (alone["fallen"] > 0)
+        assert found.peak_velocity[at][int(two)] == alone["speed2"]
+        assert np.isnan(found.peak_velocity[at][0]) == two
+        for body, number in enumerate("12" if two else "2"):
+            assert found.peak_rotation[at][body] == alone["ratio" + number]
+            demand = alone["demand"]
+            assert found.friction_demand[at][body] == demand["friction" + number]
+            assert found.least_normal_force[at][body] == demand["normal" + number]
+        assert found.lost_contact[at] == pytest.approx(
+            alone["lost_contact"], nan_ok=True
+        )
+    assert found.peak_rotation[:, :, :, 0].max() > 0

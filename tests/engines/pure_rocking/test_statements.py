@@ -29,6 +29,8 @@ from .plain_rocking import (
     drawn_motion,
     eq,
     impact,
+    kernel_laws,
+    laws,
     plain,
     record,
     roots,
@@ -417,6 +419,23 @@ def test_the_first_of_two_openings_that_vanishes_is_the_one_that_closes():
             )
         seen.add(found[1:])
     assert len(seen) == 4
+
+
+def test_kernels_ask_the_law_of_a_number():
+    """Of those that have a rate; all others leave what momentum gives."""
+    rng = np.random.default_rng(22)
+    for law in laws():
+        for given in rng.uniform(0.1, 2.0, (4, 4)):
+            value, by_momentum, before, moved = given
+            found = kernel_laws.rate(law.number, value, by_momentum, before, moved)
+            if law.rate is None:
+                assert found == by_momentum
+            else:
+                assert found == law.rate(value, by_momentum, before, moved)
+        assert bool(kernel_laws.moves_impulse(law.number)) == law.moves_impulse
+        assert bool(kernel_laws.scales_momentum(law.number)) == law.scales_momentum
+    numbers = [law.number for law in laws()]
+    assert len(set(numbers)) == len(numbers) > 3
 
 
 def test_sines_of_a_history_are_numpys():

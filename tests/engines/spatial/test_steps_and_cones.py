@@ -41,6 +41,7 @@ from .plain_space import (
     step,
     stick,
     uneven,
+    whole,
 )
 from .plain_space import cone as cones
 
@@ -205,6 +206,84 @@ def test_impulses_obey_the_conditions_of_contact_with_coulombs_cone(touch):
     assert {"slides", "sticks"} <= kinds or n > 2
     assert kinds
     assert missing <= 2
+
+
+@pytest.mark.parametrize("armed", [True, False])
+def test_the_margin_of_a_face_that_slides_is_of_its_pressure_or_its_fastest_point(
+    armed,
+):
+    """Friction acts nearer the centre than the points; slip that has not begun may only go forwards."""
+    rng, seen = np.random.default_rng(60), set()
+    for number in range(8):
+        body, s, y = uneven(rng), shaken(rng), np.zeros(solid.SIZE)
+        set_down_at = rng.uniform(0, 6)
+        y[3], y[6] = math.cos(set_down_at / 2), math.sin(set_down_at / 2)
+        y[2] = body.height
+        y[7:9] = rng.normal(0, 0.003 if number % 2 else 0.3, 2)
+        y[12] = 0.01 * rng.normal()
+        closed = (0, 2, 3, 5)
+        mode(s, *closed, slides=1)
+        s.armed[:4], s.lam[:4, 2] = armed, rng.uniform(0.5, 3.0, 4)
+        s.direction[:4] = (0.6, -0.8)
+        s.slip[:4] = (0.6, -0.8)
+        r = attitude(y)
+        arms = np.array([point(body, i) for i in closed])
+        arms[:, :2] *= forces.twist_of(body, s)
+        slips = np.array([jacobian(y, arm)[:2] @ y[7:13] for arm in arms])
+        fastest, forwards = np.hypot(*slips.T).max(), (slips @ (0.6, -0.8)).max()
+        slip = fastest - limits.AT_REST if armed else forwards + step.BACKWARD
+        assert step.face_slip(body, y, rotation(y), s) == pytest.approx(slip)
+        pressed = s.lam[:4, 2] @ arms[:, :2] / s.lam[:4, 2].sum()
+        pressed /= forces.twist_of(body, s)
+        corners = np.array([point(body, i)[:2] for i in range(6)])
+        edges = np.roll(corners, -1, axis=0) - corners
+        normals = np.stack([-edges[:, 1], edges[:, 0]], axis=1)
+        normals /= np.hypot(*edges.T)[:, None]
+        inside = ((pressed - corners) * normals).sum(axis=1).min()
+        found, what = step.margin(body, y, s)
+        assert found == pytest.approx(min(inside, slip), abs=1e-6)
+        assert what == (limits.OPENS if inside < slip else limits.SLIP_ENDS)
+        assert r[2, 2] == pytest.approx(1.0)
+        seen.add(what)
+    assert seen == {limits.OPENS, limits.SLIP_ENDS} or not armed
+
+
+def test_what_jams_is_stopped_and_sticks_where_it_is():
+    rng = np.random.default_rng(61)
+    for closed in ((2,), (1, 2), (0, 2, 4)):
+        body, s = uneven(rng), case()
+        y = state(rng, body)
+        if len(closed) > 2:
+            set_down(y, body)
+        mode(s, *closed, slides=1)
+        contacts.jam(body, y, s)
+        assert (s.jammed, s.count) == (1, len(closed))
+        r = attitude(y)
+        for k, i in enumerate(closed):
+            assert s.slides[k] == forces.STICKS
+            assert jacobian(y, point(body, i)) @ y[7:13] == pytest.approx(0, abs=1e-8)
+            assert s.anchor[k] == pytest.approx((y[:3] + r @ point(body, i))[:2])
+
+
+def test_a_step_that_is_forced_goes_on_as_the_motion_is_and_is_counted():
+    """In flight, by a parabola, at most to the end of the interval."""
+    rng = np.random.default_rng(62)
+    for left in (1.0, 0.3):
+        body, s = uneven(rng), case()
+        y = state(rng, body)
+        y[3:7] *= 1.001
+        y[10:13] = 0.0
+        before = y.copy()
+        mode(s)
+        h = min(whole.FORCED, left * whole.FORCED)
+        after = whole.force_step(body, 0.5, 0.5 + left * whole.FORCED, y, s)
+        assert after == pytest.approx(0.5 + h, abs=1e-15)
+        fall = np.array([0.0, 0.0, -G])
+        assert y[7:10] - before[7:10] == pytest.approx(h * fall, rel=1e-9)
+        moved = h * before[7:10] + h * h / 2 * fall
+        assert y[:3] - before[:3] == pytest.approx(moved, rel=1e-6)
+        assert np.linalg.norm(y[3:7]) == pytest.approx(1.0, abs=1e-14)
+        assert s.counters[limits.UNSOLVED] == 1
 
 
 def small_system(rng, mu=0.4):
