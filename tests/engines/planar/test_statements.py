@@ -13,6 +13,9 @@ import pytest
 from scipy.integrate import RK45, solve_ivp
 from scipy.optimize import brentq
 
+import rockfrag
+import rockfrag.system
+
 from ...mutants.plain import plain_library
 from ...oracle import witness as other_witness
 from ...oracle.standing import StandingBody, standing, turn
@@ -47,7 +50,6 @@ with plain_library():
         Block,
         Bond,
         Column,
-        ImpactLaw,
         SlidingPendulum,
         Tie,
         Wall,
@@ -1313,8 +1315,9 @@ def test_a_plate_swings_on_if_its_load_stands_where_it_turns_back(kind, part):
         (0.4, 0.9, 0.003, "tips"),
         (0.9, 0.3, -0.003, "slides"),
     ):
-        block = with_contacts(Block(width, 0.8, 80.0), [rough])
+        block = as_system(Block(width, 0.8, 80.0))
         p = plain(system_record(hold(block, support=isolator), G))
+        p.static[1] = p.kinetic[1] = rough
         w = plain(working_memory())
         w.q, w.drive[:], w.kind[:], w.closed[:2] = p.standing, -1, 1, 1
         w.whole[0], w.slides[0], w.outcome.stroke[:] = support.GUIDED, 1, 0.0
@@ -1544,12 +1547,14 @@ def test_a_block_comes_down_by_the_law_of_its_contact(law, side):
     """Its rate is a part of the one before: of that by momentum or its own, as far as no energy is gained."""
     rng, gave_way = np.random.default_rng(23), 0
     for number in range(8):
-        block = Block(rng.uniform(0.2, 0.4), 1.0, 80.0)
+        block = rockfrag.Block(rng.uniform(0.2, 0.4), 1.0, 80.0)
         h, b = 0.5, block.width / 2
         own = 1 - 1.5 * b**2 / (h**2 + b**2)
         # Housner (1963); more than it came with it cannot have
         value = own * rng.uniform(0.8, 0.95) if number else 1.01
-        system = with_contacts(block, [5.0], [ImpactLaw(law, value, value)])
+        system = with_contacts(
+            block, [5.0], [rockfrag.system.ImpactLaw(law, value, value)]
+        )
         p, w = plain(system_record(system, G)), plain(working_memory())
         w.drive[:], w.kind[:] = -1, 1
         w.q, w.v = posed(p, [-side * 1e-13], [side * 0.4])

@@ -8,7 +8,6 @@ from ...mutants.plain import plain_library
 
 with plain_library():
     from rockfrag.engines.algebra.vectors import rotation
-    from rockfrag.engines.contract import Case, Cases, Request
     from rockfrag.engines.spatial import _at_rest as at_rest
     from rockfrag.engines.spatial import _body as solid
     from rockfrag.engines.spatial import _cone as cone
@@ -33,23 +32,16 @@ with plain_library():
     from rockfrag.engines.spatial import _stick as stick
     from rockfrag.engines.spatial import engine
     from rockfrag.engines.spatial.body import kernel_body
-    from rockfrag.records.motion import GroundMotion, Motion
-    from rockfrag.system import Bond, Tie, Wall
+    from rockfrag.system import Tie, Wall
     from rockfrag.system.body import Circle, Polygon, RigidBody
     from rockfrag.system.contact import Contact
     from rockfrag.system.system import System
 
 # what is imported plain is so once: modules of tests take it from here
 __all__ = [
-    "Bond",
-    "Case",
-    "Cases",
     "Circle",
     "Contact",
-    "GroundMotion",
-    "Motion",
     "Polygon",
-    "Request",
     "RigidBody",
     "System",
     "Tie",

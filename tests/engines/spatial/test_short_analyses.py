@@ -1,6 +1,6 @@
 """Short analyses of bodies in space of no symmetry, whole: what must be the same, and the balance of energy.
 
-Kernels run as plain Python.
+What the engine makes of a grid or a case is asked of the library as it is, kernels by themselves as plain Python.
 """
 
 import math
@@ -9,27 +9,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rockfrag.engines.contract import Case, Cases, Request
+from rockfrag.engines.spatial import engine
+from rockfrag.engines.spatial.body import kernel_body
+from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.system import Bond, Tie, Wall
+from rockfrag.system.body import Circle, Polygon, RigidBody
+from rockfrag.system.contact import Contact
+from rockfrag.system.system import System
+
 from .plain_space import (
     OUTLINE,
-    Bond,
-    Case,
-    Cases,
-    Circle,
-    Contact,
     G,
-    GroundMotion,
-    Motion,
-    Polygon,
-    Request,
-    RigidBody,
-    System,
-    Tie,
-    Wall,
     attitude,
     case,
-    engine,
     ground,
-    kernel_body,
     limits,
     outcome,
     plain,
