@@ -1541,6 +1541,34 @@ def test_laws_of_impacts_are_looked_for_at_contacts_and_walls(monkeypatch):
         p.bounce[k] = 0.0
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_corner_leaves_a_smooth_wall_by_its_ratio(side):
+    """One push along the normal of the wall, through the corner that meets it."""
+    rng = np.random.default_rng(27)
+    block = as_system(Block(0.4, 1.0, 80.0))
+    for _ in range(5):
+        ratio, theta = rng.uniform(0.1, 0.9), side * rng.uniform(0.05, 0.3)
+        wall = Wall(0.5, 0.0 if side > 0 else math.pi, restitution=ratio)
+        p, w = plain(system_record(hold(block, wall), G)), plain(working_memory())
+        w.drive[:], w.kind[:] = -1, 1
+        flat, _ = posed(p, [theta], [0.0])
+        w.q, end = flat, int(side > 0)
+        corner = turn(theta) @ p.edge[1, end]
+        w.q[:2] = side * 0.5 - corner[0], 1.0
+        came = rng.normal(0, 0.3, 3)
+        came[0] += 2.0 * side
+        w.v[:3], w.touching[1, end] = came, 1
+        solve.look_at(p, w, w.q)
+        impacts.strike(p, w, 0.0, 0.0, 0.0)
+        jump = w.v[:3] - came
+        assert jump[1] == pytest.approx(0.0, abs=1e-9)
+        # of a push to the right above the centre the moment is clockwise
+        assert jump[2] * p.inertia[0] == pytest.approx(80.0 * jump[0] * corner[1])
+        before, after = (v[0] + v[2] * corner[1] for v in (came, w.v[:3]))
+        assert side * before > 0
+        assert after == pytest.approx(-ratio * before)
+
+
 @pytest.mark.parametrize("law", ["position", "couple", "ratio"])
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_block_comes_down_by_the_law_of_its_contact(law, side):

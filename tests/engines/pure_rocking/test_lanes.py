@@ -666,3 +666,69 @@ def test_of_a_closing_and_a_contact_that_lets_go_before_the_first_is_taken():
                 assert found == (pytest.approx(first, abs=1e-9), lets_go)
                 seen.add((c, lets_go))
     assert len(seen) == 8
+
+
+@pytest.mark.parametrize("upward", [False, True])
+def test_what_turns_alone_advances_by_its_equation_and_goes_back_to_the_same_bits(
+    upward,
+):
+    """θ'' = W (gx cos θ + gy sin θ) - a/g (gy cos θ - gx sin θ) over what is left of a sample."""
+    rng, flags = np.random.default_rng(33), set()
+    lane = plain(np.zeros(1, stack_one.LANE)[0])
+    n = cases.LANES
+    lane.gx[:], lane.gy[:] = rng.normal(0, 2e-4, n), rng.uniform(1e-4, 4e-4, n)
+    lane.theta[:], lane.omega[:] = rng.normal(0, 0.2, n), rng.normal(0, 2e-3, n)
+    lane.theta[:4] = 1.5 * np.pi / 3 * np.array([1.001, -1.001, 0.999, -0.999])
+    lane.omega[:4] = 0.0
+    lane.side[:] = np.where(lane.theta < 0, -1.0, 1.0)
+    # some come down
+    lane.theta[4:8] *= 1e-3
+    lane.omega[4:8] = -2e-3 * lane.side[4:8]
+    lane.ground[:], lane.ground_end[:] = rng.normal(0, 3, (2, n))
+    lane.weight[:], lane.weight_end[:] = rng.uniform(0.5, 1.5, (2, n))
+    lane.part_left[:] = rng.uniform(0.2, 1.0, n)
+    # some cannot be held
+    lane.right[stack_constants.OF_GRAVITY, 8:10] = -1.0
+    lane.left[stack_constants.OF_GRAVITY, 10:12] = -1.0
+    lane.was_weight[:] = lane.before_weight[:] = 1.0
+    before = lane.copy()
+    stack_one.advance(lane, G, upward)
+    first = lane.rates.copy()
+    for i in range(n):
+        left = before.part_left[i]
+
+        def rates(t, y, i=i, left=left):
+            a = before.ground[i] + (before.ground_end[i] - before.ground[i]) * t / left
+            w = 1.0
+            if upward:
+                w = before.weight[i]
+                w += (before.weight_end[i] - before.weight[i]) * t / left
+            gx, gy = before.gx[i], before.gy[i]
+            c, s = math.cos(y[0]), math.sin(y[0])
+            return y[1], w * (gx * c + gy * s) - a / G * (gy * c - gx * s)
+
+        y = before.theta[i], before.omega[i]
+        end = solve_ivp(rates, (0, left), y, rtol=1e-12, atol=1e-15).y[:, -1]
+        assert (lane.theta[i], lane.omega[i]) == pytest.approx(end, abs=1e-11)
+        flag = cases.QUIET
+        if abs(end[0]) >= np.pi / 2:
+            flag = cases.NEARS
+        if before.side[i] * end[0] < 0:
+            flag = cases.CLOSES
+        if 8 <= i < 12:
+            flag = cases.RELEASE
+        assert lane.flag[i] == flag
+        flags.add(float(flag))
+        assert (lane.ground[i], lane.part_left[i]) == (before.ground_end[i], 1.0)
+    assert len(flags) == 4
+    lane.ground_end[:] = rng.normal(0, 3, n)
+    lane.weight_end[:] = rng.uniform(0.5, 1.5, n)
+    stack_one.advance(lane, G, upward)
+    assert (lane.rates != first).any(axis=0).all()
+    for i in range(n):
+        stack_one.go_back(lane, i, G, upward)
+    assert (lane.rates == first).all()
+    for name in ("theta", "omega", "ground"):
+        assert (lane["was_" + name] == before[name]).all()
+    assert (lane.was_left == before.part_left).all()
+    assert (lane.ground_end == before.ground_end).all()

@@ -133,6 +133,31 @@ def test_closed_contacts_hold_as_firmly_as_the_plain_model_says_and_open_where_i
     assert len({after for _, after in seen}) == 9
 
 
+def test_a_contact_that_fails_again_at_once_opens_where_it_holds_least():
+    """Whatever rounding says; if time has passed, the state that its accelerations ask for is taken."""
+    seen = set()
+    for rng, body, model in stacks(34, 25):
+        for c in [*STATES, (0, 0)]:
+            pull = (rng.normal(0, 2), rng.uniform(8, 12))
+            theta, omega = drawn_motion(rng, c)
+            state = state_of(c, theta, omega, pull)
+            margins = model.margins(c, theta, omega, pull)
+            settled = model.settled(c, theta, omega, pull)
+            for contact in [k for k in (0, 1) if c[k] == 0]:
+                fails = contact + 1
+                assert contact_states.release(body, state, fails, False) == settled
+                found = contact_states.release(body, state, fails, True)
+                if settled != c:
+                    assert found == settled
+                    continue
+                firm = {side: margins[contact, side] for side in (1, -1)}
+                expected = list(c)
+                expected[contact] = min(firm, key=firm.__getitem__)
+                assert found == tuple(expected)
+                seen.add((c, contact))
+    assert len(seen) == 6
+
+
 def test_a_body_rests_as_long_as_no_margin_is_below_zero():
     scratch = state_of((0, 0), (0, 0), (0, 0))
     for _, body, model in stacks(5, 20):
@@ -264,6 +289,27 @@ def test_impacts_are_those_of_the_plain_model(law):
         gave_way += gives
     # energy stops some of the larger ratios
     assert gave_way > 0 or law != "ratio"
+
+
+@pytest.mark.parametrize("law", ["couple", "ratio"])
+def test_what_was_full_opens_to_either_side_as_the_other_contact_obeys_its_law(law):
+    rng, seen = np.random.default_rng(35), set()
+    for number in range(80):
+        stack = slender_stack(rng)
+        restitution = measured(stack, rng.uniform(0.3, 1.4), law)
+        body = plain(body_record(system_of(stack, restitution=restitution), False, G))
+        model, side = Model(stack, G, restitution), int(rng.choice([1, -1]))
+        c = (side, 0) if number % 2 else (0, side)
+        closes = tuple(each != 0 for each in c)
+        omega = -np.array(c) * rng.uniform(0.2, 2.0)
+        theta = np.zeros(2)
+        expected = model.impact(c, c, theta, omega.cumsum())
+        before = state_of(c, theta, omega.cumsum())
+        *after, w1, w2, gives = impact.impact(body, before, *closes)
+        assert (tuple(after), bool(gives)) == (expected[0], expected[2])
+        assert (w1, w2) == pytest.approx(expected[1], abs=1e-9)
+        seen.add((c, tuple(after)))
+    assert len(seen) > 6
 
 
 def test_what_an_impact_leaves_shut_is_pushed_where_its_resultant_passes_the_base():

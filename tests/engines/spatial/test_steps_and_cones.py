@@ -3,6 +3,7 @@
 Kernels are called one by one, as plain Python.
 """
 
+import itertools
 import math
 
 import numpy as np
@@ -16,6 +17,7 @@ from .plain_space import (
     G,
     RigidBody,
     System,
+    Wall,
     attitude,
     case,
     contacts,
@@ -116,6 +118,54 @@ def test_the_error_of_a_step_is_the_largest_part_of_the_pairs_difference():
     # the attitude counts by as much as the body leans
     scale[3:7] = min(1.0, 1e3 * math.hypot(up[0], up[1]) + 1e-4)
     assert error == pytest.approx((off / scale).max(), rel=1e-9)
+
+
+@pytest.mark.parametrize("place", range(13))
+def test_each_component_has_its_part_in_the_error_of_a_step(place):
+    """Over its size, places and velocities beside one; the attitude of a rim over how far it leans."""
+    rng, h = np.random.default_rng(63), 5e-3
+    disc = RigidBody(1.0, np.diag([0.1, 0.1, 0.02]), (0.0, 0.0, 0.4), Circle(0.2), 0.8)
+    rim = plain(kernel_body(System((disc,), (Contact(),))))
+    for body, leans in ((uneven(rng), 1.0), (rim, 1e3 * 1e-4 + 1e-4)):
+        s, y = case(), leaning(body, 1e-4, 0.4)
+        y[:3], y[7:13] = rng.normal(0, 3, 3), rng.normal(0, 3, 6)
+        s.slopes[:, place] = rng.normal(size=7)
+        off = abs(h * (RK45.E @ s.slopes[:, place]))
+        size = leans if 3 <= place < 7 else 1.0 + abs(y[place])
+        assert step.error_of(body, h, y, s) == pytest.approx(off / size, rel=1e-3)
+
+
+def test_edges_lie_between_contacts_of_one_surface():
+    """Along the ground or one wall; between two surfaces there is none to split an impulse along."""
+    rng = np.random.default_rng(64)
+    body = uneven(rng, Wall(2.5, 0.0), Wall(2.5, 1.9))
+    s, y = case(), state(rng, body)
+    first = [i for i in solid.wall_candidates(body) if solid.may_meet(body, i)]
+    of_wall = [[i for i in first if solid.wall_of(i) == w] for w in (0, 1)]
+    which = (1, 4, *of_wall[0][:1], of_wall[0][3], *of_wall[1][:1])
+    which = (which[0], *which[2:])
+    r = attitude(y)
+
+    def place(i):
+        return point(body, i) if i < 6 else np.array(solid.arm(body, rotation(y)[2], i))
+
+    for chosen in (which, (1, 4, 0)):
+        s.which[: len(chosen)] = chosen
+        s.edge[:] = 7.0
+        problem.fill_edges(body, y, rotation(y), s.which, len(chosen), s)
+        for a, b in itertools.permutations(range(len(chosen)), 2):
+            i, j = chosen[a], chosen[b]
+            way = r @ (place(j) - place(i))
+            found = np.array(s.edge[a, b])
+            if i < 6 and j < 6:
+                expected = way[:2] / np.hypot(*way[:2])
+            elif min(i, j) >= 6 and solid.wall_of(i) == solid.wall_of(j):
+                along = np.array(solid.in_frame(body, i, tuple(way)))[:2]
+                assert np.linalg.norm(along) <= np.linalg.norm(way)
+                expected = along / np.hypot(*along)
+            else:
+                expected = (0.0, 0.0)
+            assert found == pytest.approx(expected)
 
 
 def test_both_ends_of_an_edge_bear_the_same_part_of_what_they_could_along_it():
