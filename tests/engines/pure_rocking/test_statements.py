@@ -492,6 +492,20 @@ def test_sines_of_a_history_are_numpys():
     assert cosine == pytest.approx(np.cos(angles))
 
 
+def test_a_contact_that_opens_this_instant_closes_at_its_next_root_however_short_the_time():
+    """A hop of a parabola from zero, over times from a thousandth of the step to all of it."""
+    for end in (1.0, 0.3, 0.02, 1e-3):
+        for part in (0.05, 0.4, 0.97, 1.2):
+            root = part * end
+            gap = np.zeros(8)
+            gap[1:3] = root, -1.0
+            found = roots.closing_time(gap, end)
+            if part > 1:
+                assert found == roots.NEVER
+            else:
+                assert found == pytest.approx(root, rel=1e-9)
+
+
 def test_no_gap_that_closes_between_the_ends_of_a_step_is_passed_over():
     """By its opening and rate at the start and its rate at the end, as a cubic, and not much too often."""
     rng, closes, looked = np.random.default_rng(12), 0, 0
