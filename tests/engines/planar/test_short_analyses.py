@@ -300,6 +300,10 @@ def test_a_block_that_slides_is_left_behind_by_jumps_of_its_base():
     assert told["time"].to_numpy() == pytest.approx([0.03, 0.07])
     energies = 50.0 / 2 * np.array([0.2**2, speed**2])
     assert told["energy_after"].to_numpy() == pytest.approx(energies, rel=1e-6)
+    ledgers = found.energy[["input", "lost_friction", "lost_contact_1"]]
+    assert not ledgers.iloc[0].any()
+    rubbed = 50.0 * brake * (first + second)
+    assert ledgers["lost_friction"].iloc[-1] == pytest.approx(rubbed, rel=1e-6)
 
 
 def test_a_base_that_drops_leaves_its_block_in_flight_and_one_that_jumps_up_does_not():

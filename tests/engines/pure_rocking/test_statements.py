@@ -504,6 +504,10 @@ def test_a_contact_that_opens_this_instant_closes_at_its_next_root_however_short
                 assert found == roots.NEVER
             else:
                 assert found == pytest.approx(root, rel=1e-9)
+        # what opens again soon after has closed all the same
+        first, then = 0.3 * end, 0.9 * end
+        gap[1:4] = first * then, -(first + then), 1.0
+        assert roots.closing_time(gap, end) == pytest.approx(first, rel=1e-9)
 
 
 def test_no_gap_that_closes_between_the_ends_of_a_step_is_passed_over():
