@@ -91,13 +91,13 @@ def drum(off=(0.05, -0.03), radius=0.2, height=0.4):
 def test_a_body_that_meets_walls_alone_is_held_by_no_tie():
     rng, wall = np.random.default_rng(22), Wall(2.0, 0.0)
     tie = Tie((0.0, 0.0, 1.0), (2.0, 0.0, 1.2), 1e4)
-    for ways, alone in (
+    for holding, alone in (
         ((), False),
         ((wall,), True),
         ((wall, tie), False),
         ((tie,), False),
     ):
-        assert solid.meets_walls_alone(uneven(rng, *ways)) == alone
+        assert solid.meets_walls_alone(uneven(rng, *holding)) == alone
 
 
 def margins_of_rest(gravity, r):

@@ -621,7 +621,7 @@ def solve_general(body, y, rows, n, rubs, s):
     without them.
     """
     fill_delassus(body, rows, s.closed, n, s.delassus, twist_of(body, s))
-    fill_ways(body, y, rows, n, s)
+    fill_directions(body, y, rows, n, s)
     for i in range(n):
         s.given[i], s.friction[i] = s.slides[i], 0.0
         if rubs:
@@ -640,7 +640,7 @@ def solve_general(body, y, rows, n, rubs, s):
 
 
 @kernel
-def fill_ways(body, y, rows, n, s):
+def fill_directions(body, y, rows, n, s):
     """Fill s.way of n closed contacts with the direction of their slip, less where a face turns about one of them.
 
     Next to the point that a face turns about a contact would rub this way and that: below SLIP_FLOOR its friction
