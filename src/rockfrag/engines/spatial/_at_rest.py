@@ -15,10 +15,10 @@ from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.pure_rocking.kernels.roots import narrowed
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _contacts as contacts
+from rockfrag.engines.spatial import _face as face
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _modes as modes
-from rockfrag.engines.spatial import _points as points
 from rockfrag.engines.spatial import _rest as rest
 from rockfrag.engines.spatial import _rim as rim
 
@@ -80,16 +80,13 @@ def leave_rest(body, y, tau, s):
     """
     rows = algebra.rotation(y)
     gravity = forces.effective_gravity_at(s.field, tau)
-    if rest.is_tied(body, y, rows, s) and modes.choose_mode(body, tau, y, s):
-        return
-    if body.walls:
-        gravity = rest.borne_by_ground(body, y, rows, gravity)
+    load = rest.load_at_rest(body, y, rows, gravity, s)
+    gravity = load.force
     small = NO_MARGIN * s.field[forces.GRAVITY]
-    level = algebra.norm(gravity[0], gravity[1])
     s.rests = 0
-    whole = rest.rest_margin(body, y, rows, gravity, s)
-    if -body.static * gravity[2] - level < small or whole < -small:
-        slide_or_jump(body, y, tau, s, gravity, level, whole < -small)
+    jumps = load.tied or rest.standing_margin(body, y, rows, load) < -small
+    if jumps or rest.grip_margin(body, load) < small:
+        slide_or_jump(body, y, tau, s, load, jumps)
         return
     if body.rim > 0:
         b = algebra.to_body(rows, (gravity[0], gravity[1], 0.0))
@@ -113,19 +110,14 @@ def leave_rest(body, y, tau, s):
 
 
 @kernel
-def slide_or_jump(body, y, tau, s, gravity, level, jumps):
-    """Leave rest by sliding on the whole base, or, after a jump of the ground's acceleration, in any mode.
+def slide_or_jump(body, y, tau, s, load, jumps):
+    """Leave rest by sliding on the whole base, or, after a jump of the load, in any mode.
 
-    ``level`` is the horizontal part of the effective gravity [m/s²]; a ground that ``jumps`` has left the margin
-    of rest behind at once.
+    A load that ``jumps`` has left the margin of rest behind at once; so may one with a taut tie.
     """
     if jumps and modes.choose_mode(body, tau, y, s):
         return
-    n = points.pick_feet(body, y, algebra.rotation(y), s)
-    for i in range(n):
-        s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
-        s.direction[i, 0], s.direction[i, 1] = gravity[0] / level, gravity[1] / level
-    s.count = n
+    face.slide_flat(body, y, algebra.rotation(y), load, s)
     s.counters[limits.SLIDINGS] += 1
 
 

@@ -650,13 +650,14 @@ def fill_directions(body, y, rows, n, s):
     for i in range(n):
         u = slip_of(body, y, rows, i, s)
         fastest = max(fastest, norm(u[0], u[1]))
-        s.way[i, 0], s.way[i, 1] = slip_direction(s, i, u[0], u[1])
-    if n < 3 or fastest < 2 * SLIP_FLOOR:
-        return
+        s.way[i, 0], s.way[i, 1] = u[0], u[1]
+    moves = n >= 3 and fastest >= 2 * SLIP_FLOOR
     for i in range(n):
-        u = slip_of(body, y, rows, i, s)
-        if norm(u[0], u[1]) < SLIP_FLOOR:
-            s.way[i, 0], s.way[i, 1] = u[0] / SLIP_FLOOR, u[1] / SLIP_FLOOR
+        u, v = s.way[i, 0], s.way[i, 1]
+        if moves and norm(u, v) < SLIP_FLOOR:
+            s.way[i, 0], s.way[i, 1] = u / SLIP_FLOOR, v / SLIP_FLOOR
+        else:
+            s.way[i, 0], s.way[i, 1] = slip_direction(s, i, u, v)
 
 
 @kernel

@@ -48,16 +48,7 @@ def impact(body, y, gravity, least, s):
         return
     problem.note_slips(body, n, s)
     found, solutions = problem.solve(body, y, rows, n, least, momentum, s)
-    s.counters[limits.IMPACTS] += 1
-    s.counters[limits.AMBIGUOUS] += solutions > 1
-    s.jammed = 0
-    if found < 0:
-        # last resort: no point that touches approaches or slips any more
-        s.counters[limits.UNSOLVED] += 1
-        for i in range(n):
-            s.closed[i], s.slides[i] = s.which[i], forces.STICKS
-        s.count, s.rests = n, 0
-        contacts.hold(body, y, rows, s)
+    if not is_solved(body, y, rows, n, found, solutions, s):
         return
     for i in range(n):
         push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
@@ -88,20 +79,31 @@ def impact_at_wall(body, y, rows, gravity, n, least, s):
         if i < 0 or at < 0:
             break
         s.which[at] = i
-    s.counters[limits.IMPACTS] += 1
-    s.counters[limits.AMBIGUOUS] += solutions > 1
-    s.jammed = 0
-    if found < 0:
-        s.counters[limits.UNSOLVED] += 1
-        for i in range(n):
-            smooth = solid.is_smooth(body, s.which[i])
-            s.slides[i] = forces.SLIDES if smooth else forces.STICKS
-            s.closed[i] = s.which[i]
-        s.count, s.rests = n, 0
-        contacts.hold(body, y, rows, s)
+    if not is_solved(body, y, rows, n, found, solutions, s):
         return
     note_impulses(body, n, found, s)
     hops.keep_slow_contacts(body, y, rows, gravity, n, found, s)
+
+
+@kernel
+def is_solved(body, y, rows, n, found, solutions, s):
+    """Count an impact of the n contacts s.which, and how many ``solutions`` it has; whether it has any.
+
+    As a last resort no point that touches approaches or, but at a smooth wall, slips any more.
+    """
+    s.counters[limits.IMPACTS] += 1
+    s.counters[limits.AMBIGUOUS] += solutions > 1
+    s.jammed = 0
+    if found >= 0:
+        return True
+    s.counters[limits.UNSOLVED] += 1
+    for i in range(n):
+        smooth = solid.is_smooth(body, s.which[i])
+        s.slides[i] = forces.SLIDES if smooth else forces.STICKS
+        s.closed[i] = s.which[i]
+    s.count, s.rests = n, 0
+    contacts.hold(body, y, rows, s)
+    return False
 
 
 @kernel
