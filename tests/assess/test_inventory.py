@@ -73,6 +73,29 @@ def test_what_topples_many_times_a_year_has_rates_and_no_probability_of_one(
     assert joint.losses["annual_rate"].iloc[0] == pytest.approx(total, rel=1e-9)
 
 
+def test_one_or_more_topple_as_often_as_the_most_exposed_at_least_and_as_all_at_most(
+    own_records, tmp_path
+):
+    """Under a steep hazard what is not known moves rates most, and nothing may topple below what lifts it."""
+    path = tmp_path / "shelf.csv"
+    path.write_text(
+        "name,width,height,value\nvase,12 cm,60 cm,3\nblock,90 cm,60 cm,5\n"
+    )
+    hazard = tmp_path / "steep.csv"
+    hazard.write_text("pga_g,annual_rate\n0.05,1\n0.1,0.01\n0.2,1e-4\n0.4,1e-6\n")
+    own = {"paths": [str(own_records / "catalogue.csv")]}
+    joint = assess_inventory(path, {"hazard": [str(hazard)], "records": own}).joint
+    rates = joint.objects.set_index("name")["annual_rate"]
+    assert rates["vase"] > 10 * rates["block"]
+    one = joint.numbers.set_index("at_least").loc[1]
+    # what moves uplift of one alone takes some hundredths from its rate
+    assert rates["vase"] <= one["annual_rate"] <= 1.1 * rates.sum()
+    assert one["probability_lower"] <= one["probability"] <= one["probability_upper"]
+    losses = joint.losses["annual_rate"]
+    assert rates["vase"] <= losses.iloc[0] <= 1.1 * rates.sum()
+    assert losses.is_monotonic_decreasing
+
+
 def test_numbers_and_losses_follow_from_the_objects_and_what_adds_most_comes_first(
     gallery,
 ):

@@ -20,11 +20,11 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.findings import estimate_of, mitigation
 from rockfrag.assess.inventory import (
     Inventory,
-    JointRisk,
     best_change,
     inventory_table,
     joint_findings,
 )
+from rockfrag.assess.joint_risk import JointRisk
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.risk import probability_in
 from rockfrag.assess.texts import Text

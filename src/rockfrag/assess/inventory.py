@@ -17,9 +17,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from rockfrag.assess.answer import (
     RECORDS,
@@ -30,19 +28,14 @@ from rockfrag.assess.answer import (
     shake_all,
 )
 from rockfrag.assess.core.decisions import Action
-from rockfrag.assess.core.draws import FEW_MEMBERS
 from rockfrag.assess.core.likelihood import likelihood_of
 from rockfrag.assess.findings import estimate_of, few_earthquakes, mitigation
-from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.joint_risk import JointRisk, joint_risk
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
-from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.page_list import KEYS_OF_SHAKING, is_page_list, read_page_list
 from rockfrag.assess.request import Request, make_request
-from rockfrag.assess.risk import Evidence, after_uplift, risk_target, toppling_rate
-from rockfrag.assess.sources import SPACE
 from rockfrag.assess.texts import Text
-from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import check_name, file_name
 from rockfrag.base.plausible import LARGEST_SIZE
@@ -52,7 +45,6 @@ from rockfrag.collections.exported_table import (
     is_export,
     read_export,
 )
-from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.runtime.progress import Progress
 from rockfrag.words.catalogue import FIRST, catalogue
 from rockfrag.words.findings import (
@@ -66,150 +58,6 @@ from rockfrag.words.findings import (
     two,
     whole,
 )
-
-NUMBERS = (1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000, 2000, 5000, 10_000)
-"""Numbers of objects of which it is said how often so many topple together."""
-
-LOSSES = 24  # Losses of which it is said how often they are exceeded
-
-
-@dataclass(frozen=True, eq=False)
-class JointRisk:
-    """What an inventory risks together, in earthquakes that shake all of it."""
-
-    # A row an object: ``name``, ``annual_rate`` of toppling, ``value``, mean ``annual_loss``, its ``contribution``
-    objects: pd.DataFrame
-    # A row a number of objects: ``at_least``, ``annual_rate`` of earthquakes that topple so many,
-    # ``probability`` of one in the years asked for with limits (``probability_lower``,
-    # ``probability_upper``), and ``at_the_site``, the fraction of motions at the site's level
-    numbers: pd.DataFrame
-    # A row a loss: ``loss``, and ``annual_rate`` with which one exceeds it
-    losses: pd.DataFrame
-    # Rate of earthquakes that topple both of two objects over the geometric mean of their rates [-]; or NaN
-    correlation: pd.DataFrame
-
-
-def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
-    """Count what topples together, no value as 1; None without a hazard, or with objects in several measures."""
-    hazard = found[0].hazard
-    if hazard is None or any(
-        assessment.measure != found[0].measure for assessment in found
-    ):
-        return None
-    outcomes = [assessment.outcomes for assessment in found]
-    # with the velocity of the site a motion stands for several; all objects have the same of them
-    intensity_levels = outcomes[0].intensity_levels
-    fell = np.array([outcome.overturned for outcome in outcomes])
-    allowed = np.logical_and.reduce(
-        [outcome.intensity_levels.allowed for outcome in outcomes]
-    )
-    together = replace(
-        outcomes[0], intensity_levels=replace(intensity_levels, allowed=allowed)
-    )
-    values = np.array([assessment.request.value for assessment in found])
-    worth = np.where(np.isfinite(values), values, 1.0)
-    levels = intensity_levels.levels
-    per_level = np.array(
-        [toppling_rate(levels, unit, hazard) for unit in np.eye(levels.size)]
-    )
-    rates = np.array([_annual_rate(each.evidence, hazard) for each in found])
-    names = [assessment.request.name for assessment in found]
-    correlation = _correlation(fell, allowed, per_level)
-    return JointRisk(
-        _by_object(names, rates, worth),
-        _numbers(found[0], together, fell.sum(axis=0)),
-        _losses(together, np.tensordot(worth, fell, axes=1), hazard),
-        pd.DataFrame(correlation, index=pd.Index(names, name="name"), columns=names),
-    )
-
-
-def _losses(
-    together: ObjectOutcomes, lost: Floats, hazard: HazardCurve
-) -> pd.DataFrame:
-    """How often losses are exceeded [1/year], from the least object to everything.
-
-    ``lost`` is the value that each motion at each level takes, shape (motions, levels).
-    """
-    steps = np.zeros(0)
-    if lost.any():
-        least = max(lost[lost > 0].min(), 1e-6 * lost.max())
-        steps = np.geomspace(least, lost.max(), LOSSES)
-    exceeded = []
-    for step in steps:
-        reached = replace(
-            together,
-            # rounding must not take away what reaches a step exactly
-            overturned=lost >= step * (1 - 1e-12),
-            rocked=np.ones_like(together.rocked),
-            lifting=None,
-        )
-        exceeded.append(_annual_rate(_common(reached), hazard))
-    return pd.DataFrame({"loss": steps, "annual_rate": exceeded})
-
-
-def _annual_rate(evidence: Evidence, hazard: HazardCurve) -> float:
-    """Rate of toppling, the mean over what is not known [1/year]."""
-    # not of the probability, which is 1 for all rates far above one in its years
-    return evidence.drawn(risk_target(hazard, 1.0)).middle
-
-
-def _common(outcomes: ObjectOutcomes) -> Evidence:
-    """What is not known of all objects: of the others what is not known of one body says nothing."""
-    spreads = {"model": MODEL_ERRORS[CUT].blind, "space": SPACE}
-    shifts = {name: after_uplift(spread) for name, spread in spreads.items()}
-    return Evidence(outcomes, shifts, members=FEW_MEMBERS)
-
-
-def _by_object(names: list[str], rates: Floats, worth: Floats) -> pd.DataFrame:
-    """Annual rates and losses by object, and the fraction of the loss that each adds."""
-    losses = rates * worth
-    table = pd.DataFrame(
-        {"name": names, "annual_rate": rates, "value": worth, "annual_loss": losses}
-    )
-    table["contribution"] = losses / losses.sum() if losses.sum() > 0 else np.nan
-    return table.sort_values(
-        "annual_loss", ascending=False, kind="stable", ignore_index=True
-    )
-
-
-def _numbers(
-    first: Assessment, together: ObjectOutcomes, count: NDArray[np.int64]
-) -> pd.DataFrame:
-    """How often at least so many topple, with what earthquakes and the model leave open."""
-    assert first.hazard is not None and first.level is not None
-    target = risk_target(first.hazard, first.request.years)
-    at = together.intensity_levels.place_of(first.level.value)
-    rows = []
-    for least in [n for n in NUMBERS if n <= count.max()] or [1]:
-        many = replace(
-            together,
-            overturned=count >= least,
-            rocked=np.ones_like(together.rocked),
-            lifting=None,
-        )
-        evidence = _common(many)
-        found, rate = evidence.estimate(target), _annual_rate(evidence, first.hazard)
-        limits = found.value, found.lower, found.upper
-        rows.append((least, rate, *limits, many.fractions()[at]))
-    chances = ("probability", "probability_lower", "probability_upper")
-    return pd.DataFrame(
-        rows, columns=["at_least", "annual_rate", *chances, "at_the_site"]
-    )
-
-
-def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
-    """Rates of toppling together over the geometric mean of those of each, shape (objects, objects)."""
-    known = allowed.any(axis=0)
-    at = np.maximum.accumulate(np.where(known, np.arange(known.size), 0))
-    weight = np.bincount(at, per_level, minlength=known.size)
-    both = np.zeros((len(fell), len(fell)))
-    for level in np.flatnonzero(known & (weight != 0)):
-        here = fell[:, allowed[:, level], level].astype(np.float64)
-        both += weight[level] / here.shape[1] * (here @ here.T)
-    alone = np.diag(both)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(both / np.sqrt(np.outer(alone, alone)))
-
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
 HELD_BY = (
