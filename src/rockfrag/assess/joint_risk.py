@@ -77,7 +77,7 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
     order = np.argsort(lifting, axis=0, kind="stable")
     evidence = [assessment.evidence for assessment in found]
     shared = _shared(evidence)
-    counted, valued = (
+    weighed = [
         _Together(
             evidence=evidence,
             rates=rates,
@@ -89,7 +89,8 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
             lifted=np.cumsum(each[order], axis=0),
         )
         for each in (np.ones(len(found)), worth)
-    )
+    ]
+    counted, valued = weighed
     names = [assessment.request.name for assessment in found]
     correlation = _correlation(fell, allowed, per_level)
     return JointRisk(

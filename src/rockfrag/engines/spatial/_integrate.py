@@ -131,24 +131,10 @@ def integrate(
     out : takes the outcome, shape (OUTCOME,)
     s : record ``CASE`` to work in, whose counters tell the contact events afterwards
     """
-    for i in range(outcome.OUTCOME):
-        out[i] = 0.0
-    ground.set_field(s.field, acceleration, 0, scale, dt, g)
     started = solid.energy(body, y, g)
     start = solid.position_of_base(y, algebra.rotation(y), (0.0, 0.0, -body.height))
     before = outcome.heading(y)
-    s.count = s.rests = s.jammed = s.goes_on = 0
-    s.beyond = 0.0
-    holders.begin_holding(body, y, s)
-    for i in range(limits.COUNTERS):
-        s.counters[i] = 0
-    if s.bonded:
-        gaps.come_to_rest(body, y, s)
-    else:
-        modes.choose_mode(body, 0.0, y, s)
-        rim.rim_instead_of_feet(body, y, forces.effective_gravity_at(s.field, 0.0), s)
-    contacts.anchor_all(body, y, s)
-    out[outcome.CERTAIN_TIME] = math.nan
+    begin(body, acceleration, scale, dt, g, y, out, s)
     last = acceleration.shape[0] - 1
     stuck = lost_track = still = 0
     patience = RESTLESS
@@ -166,92 +152,55 @@ def integrate(
         ground.note_soon(s, peaks, k, scale, dt)
         outcome.record(history, k, y, before, out, s)
         if k > last:
-            free = body.constraints == 0 and solid.energy(body, y, g) < body.barrier
             still = still + 1 if hardly_moves(body, y, cut) else 0
+            free = body.constraints == 0 and solid.energy(body, y, g) < body.barrier
             if s.rests == 1 or free or still > STILL:
                 # on a ground at rest it stands, has too little energy left to fall, or leans and does not move
                 break
         if s.bonded:
             holders.note_bond(body, y, 0.0, s)
-        tau = 0.0
-        many = 0
-        began = out[outcome.CONTACT_EVENTS]
-        seen = began
-        s.close = limits.CLOSE
-        while dt - tau > NO_TIME * dt:
-            if forces.kind_of(s) == forces.REST:
-                tau = at_rest.rest_ends(body, y, s, tau, dt)
-                if tau < 0:
-                    break
-                if s.bonded:
-                    holders.note_bond(body, y, tau, s)
-                    # what is left is an ordinary contact
-                    s.bonded, s.breaks[solid.BOND] = 0, s.began + tau
-                    continue
-                s.goes_on = 0
-                standing = solid.balance(body, y, g)
-                at_rest.leave_rest(body, y, tau, s)
-                outcome.note_loss(standing - solid.balance(body, y, g), out)
-                ahead = dt
-                if forces.kind_of(s) == forces.REST:
-                    break
-            hurries = many >= HURRY and events.slides_any(s)
-            allowed = max(tolerance, COARSE) if hurries else tolerance
-            tau, ahead, h = advance(
-                body, tau, dt, ahead, y, allowed, cut, stuck, s, out
-            )
-            stuck = stuck + 1 if h < SHORTEST else 0
-            many += 1
-            changes = max(out[outcome.CONTACT_EVENTS] - began, many / STIFF)
-            is_left = dt - tau > NO_TIME * dt
-            if is_left and changes >= patience and solid.meets_walls_alone(body):
-                outcome.note_loss(stepping.pass_interval(body, tau, dt, y, s), out)
-                tau = dt
-                patience = AGAIN
-            if out[outcome.STEPS] > MOST_STEPS:
-                s.counters[limits.UNSOLVED] += 1
-                break
-            if many % GIVE_UP == 0:
-                s.goes_on = 0
-                outcome.note_loss(give_up(body, tau, y, s), out)
-                lost_track += 1
-                if many > 2 * GIVE_UP:
-                    break
-            if out[outcome.CONTACT_EVENTS] - seen >= MANY:
-                seen = out[outcome.CONTACT_EVENTS]
-                s.close = min(2.0 * s.close, MOST_CLOSE)
-            if stuck > STUCK:
-                # nothing is consistent here: let the motion go on as it is for a moment
-                tau = force_step(body, tau, dt, y, s)
-                stuck = 0
-            if not solid.is_known(y):
-                s.counters[limits.UNSOLVED] += 1
-                outcome.note_fall(y, s, (k + 1) * dt, out)
-                break
-            rows = algebra.rotation(y)
-            outcome.note_peaks(body, y, rows, out)
-            soon = peaks[min(k, last)]
-            if rows[2][2] <= 0.0 or outcome.fall_is_certain(
-                body, y, rows, soon, scale, g
-            ):
-                outcome.note_fall(y, s, (k + 1) * dt, out)
-                break
+        ahead, stuck, patience, lost = pass_interval(
+            body, dt, y, tolerance, cut, ahead, stuck, patience,
+            peaks[min(k, last)], scale, (k + 1) * dt, out, s,
+        )  # fmt: skip
+        lost_track += lost
         if solid.is_known(y):
             outcome.note_walk(body, y, start, out)
             before = outcome.note_turn(y, before, out)
-        if (
-            out[outcome.FELL] > 0
-            or lost_track > PATIENCE
-            or out[outcome.STEPS] > MOST_STEPS
-        ):
+        fell, many = out[outcome.FELL] > 0, out[outcome.STEPS] > MOST_STEPS
+        if fell or many or lost_track > PATIENCE:
             break
-        if many < AGAIN:
-            patience = RESTLESS
         k += 1
     if out[outcome.FELL] == 0.0:
         outcome.record(history, k, y, before, out, s)
     if solid.is_known(y):
         out[outcome.TURN] += outcome.turn_since(before, y)
+    finish(body, y, started, g, out, s)
+
+
+@kernel
+def begin(body, acceleration, scale, dt, g, y, out, s):
+    """Begin an analysis: outcome and counters at 0, the body bonded or in the mode that its state asks for."""
+    for i in range(outcome.OUTCOME):
+        out[i] = 0.0
+    for i in range(limits.COUNTERS):
+        s.counters[i] = 0
+    out[outcome.CERTAIN_TIME] = math.nan
+    ground.set_field(s.field, acceleration, 0, scale, dt, g)
+    s.count = s.rests = s.jammed = s.goes_on = 0
+    s.beyond = 0.0
+    holders.begin_holding(body, y, s)
+    if s.bonded:
+        gaps.come_to_rest(body, y, s)
+    else:
+        modes.choose_mode(body, 0.0, y, s)
+        rim.rim_instead_of_feet(body, y, forces.effective_gravity_at(s.field, 0.0), s)
+    contacts.anchor_all(body, y, s)
+
+
+@kernel
+def finish(body, y, started, g, out, s):
+    """Write what is known at the end: how it stands, what held it, and what the energy since the start leaves."""
     out[outcome.BEYOND] = s.beyond
     out[outcome.LEANS] = (
         out[outcome.FELL] == 0.0 and body.constraints > 0 and outcome.is_beyond(body, y)
@@ -267,6 +216,100 @@ def integrate(
         + y[solid.FRICTION]
         + out[outcome.LOST]
     )
+
+
+@kernel
+def pass_interval(
+    body, dt, y, tolerance, cut, ahead, stuck, patience, soon, scale, ends, out, s
+):
+    """Integrate to the end of an interval, or to a fall.
+
+    Parameters
+    ----------
+    ahead : longest step that is tried first [s]
+    stuck : steps of no length in a row that came before
+    patience : contact events after which the interval is passed by time stepping, beside walls
+    soon : largest accelerations from here on, a row of ``peaks``
+    ends : time of the motion at the end [s]
+
+    Returns
+    -------
+    The first three for the next interval, and how often the body could not be followed.
+    """
+    tau = 0.0
+    many = lost_track = 0
+    began = out[outcome.CONTACT_EVENTS]
+    seen = began
+    s.close = limits.CLOSE
+    while dt - tau > NO_TIME * dt:
+        if forces.kind_of(s) == forces.REST:
+            tau = wait(body, tau, dt, y, out, s)
+            if tau < 0:
+                break
+            ahead = dt
+        hurries = many >= HURRY and events.slides_any(s)
+        allowed = max(tolerance, COARSE) if hurries else tolerance
+        tau, ahead, h = advance(body, tau, dt, ahead, y, allowed, cut, stuck, s, out)
+        stuck = stuck + 1 if h < SHORTEST else 0
+        many += 1
+        changes = max(out[outcome.CONTACT_EVENTS] - began, many / STIFF)
+        is_left = dt - tau > NO_TIME * dt
+        if is_left and changes >= patience and solid.meets_walls_alone(body):
+            outcome.note_loss(stepping.pass_interval(body, tau, dt, y, s), out)
+            tau = dt
+            patience = AGAIN
+        if out[outcome.STEPS] > MOST_STEPS:
+            s.counters[limits.UNSOLVED] += 1
+            break
+        if many % GIVE_UP == 0:
+            s.goes_on = 0
+            outcome.note_loss(give_up(body, tau, y, s), out)
+            lost_track += 1
+            if many > 2 * GIVE_UP:
+                break
+        if out[outcome.CONTACT_EVENTS] - seen >= MANY:
+            seen = out[outcome.CONTACT_EVENTS]
+            s.close = min(2.0 * s.close, MOST_CLOSE)
+        if stuck > STUCK:
+            # nothing is consistent here: let the motion go on as it is for a moment
+            tau = force_step(body, tau, dt, y, s)
+            stuck = 0
+        if falls(body, y, soon, scale, out, s):
+            outcome.note_fall(y, s, ends, out)
+            break
+    return ahead, stuck, RESTLESS if many < AGAIN else patience, lost_track
+
+
+@kernel
+def wait(body, tau, dt, y, out, s):
+    """Let a body rest until it moves, or its bond breaks and it moves; return when, or -1 if it does not [s]."""
+    tau = at_rest.rest_ends(body, y, s, tau, dt)
+    if tau >= 0 and s.bonded:
+        holders.note_bond(body, y, tau, s)
+        # what is left is an ordinary contact
+        s.bonded, s.breaks[solid.BOND] = 0, s.began + tau
+        is_left = dt - tau > NO_TIME * dt
+        tau = at_rest.rest_ends(body, y, s, tau, dt) if is_left else -1.0
+    if tau < 0:
+        return -1.0
+    s.goes_on = 0
+    g = s.field[forces.GRAVITY]
+    standing = solid.balance(body, y, g)
+    at_rest.leave_rest(body, y, tau, s)
+    outcome.note_loss(standing - solid.balance(body, y, g), out)
+    return -1.0 if forces.kind_of(s) == forces.REST else tau
+
+
+@kernel
+def falls(body, y, soon, scale, out, s):
+    """Whether a body lies down, or can only fall, or its state is no number any more; note its peaks."""
+    if not solid.is_known(y):
+        s.counters[limits.UNSOLVED] += 1
+        return True
+    rows = algebra.rotation(y)
+    outcome.note_peaks(body, y, rows, out)
+    g = s.field[forces.GRAVITY]
+    return rows[2][2] <= 0.0 or outcome.fall_is_certain(body, y, rows, soon, scale, g)
 
 
 @kernel
