@@ -131,6 +131,30 @@ def test_an_object_may_be_held_as_it_stands(few):
     assert "putty" not in kinds and "bracket" in kinds
 
 
+def test_putty_holds_as_much_in_shear_as_in_pull_and_is_not_tried_under_casters():
+    bond = Putty(120.0).on(as_system(Block(0.3, 1.4, 80.0))).contacts[0].bond
+    assert bond.shear == bond.tension == 120.0
+    rolls = asked(**BOX, facing_deg=0, pga="0.6 g", casters="free").objects
+    kinds = [holder.key for holder in rolls.holders_to_try()]
+    assert "putty" not in kinds and "casters" in kinds
+
+
+def test_what_leans_at_the_end_is_told_beside_what_topples(few):
+    """At a wall further away than its balance an object neither stands nor lies after many motions."""
+    far, near = (
+        assess_with(
+            asked(width="30 cm", height="180 cm", wall=wall, pga="0.6 g"),
+            few,
+            brief=True,
+        )
+        for wall in ("60 cm", "2 cm")
+    )
+    leans = far.outcomes.others["leans"] & ~far.outcomes.overturned
+    assert leans.any() and far.leans.value > far.fraction.value + 0.05
+    assert "leave it leaning against its wall" in " ".join(lines_of(far))
+    assert near.leans is None and "leaning" not in " ".join(lines_of(near))
+
+
 def test_a_held_object_has_a_whole_answer_in_space(few):
     found = assess_with(asked(**BOX, facing_deg=0, pga="0.6 g", putty_n=1e6), few)
     assert found.counts[2] == 0 and found.planar < 1e-6

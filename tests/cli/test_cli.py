@@ -133,6 +133,16 @@ def test_what_holds_a_body_is_told_with_what_it_had_to_bear(simulated):
     assert "expected a stiffness such as 50 kN/m in one of the units N/m" in wrong.err
 
 
+def test_what_leans_at_the_end_is_told(tmp_path, capsys):
+    time = np.arange(700) * 0.01
+    shaken = tmp_path / "pulse.txt"
+    np.savetxt(shaken, np.where(time < 0.6, 4 * np.sin(2 * np.pi * time / 0.6), 0.0))
+    case = [str(shaken), "--unit", "m/s2", "--dt", "0.01", "--body", "0.3", "1.6", "99"]
+    assert main(["simulate", *case, "--friction", "0.7", "--wall", "30cm"]) == 0
+    told = "not overturned: it leans against a wall or hangs in a tie at the end"
+    assert told in capsys.readouterr().out
+
+
 def test_a_column_is_given_from_above(simulated, record, capsys):
     body = (*STATUE, "--pedestal", "0.2", "0.1", "9", "--pedestal", "0.3", "0.1", "20")
     slides = ("--pga", "0.6", "--friction", "0.6", "0.5", "0.4", "--restitution", "0.9")

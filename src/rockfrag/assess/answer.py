@@ -54,7 +54,7 @@ from rockfrag.engines.pure_rocking.kernels.lanes.scheduler import integrate_stac
 from rockfrag.engines.spatial._integrate import integrate_scales
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
+from rockfrag.outcomes.limit_states import LEANS, OVERTURNS, ROCKS
 from rockfrag.runtime.machine_code import is_kept
 from rockfrag.runtime.progress import LONG, Meter, in_words
 from rockfrag.system.blocks import Body
@@ -190,11 +190,20 @@ class Assessment:
     @cached_property
     def rocks_far(self) -> Estimate | None:
         """Fraction that rocks it a third of the way or topples it, as :attr:`fraction`; None without a level."""
-        reached = self.outcomes.others.get(outcomes.STEPS)
+        return self._reaches(outcomes.STEPS)
+
+    @cached_property
+    def leans(self) -> Estimate | None:
+        """Fraction that topples it or leaves it leaning, as :attr:`fraction`; None without a level or a lean."""
+        return self._reaches(LEANS)
+
+    def _reaches(self, state: str) -> Estimate | None:
+        """Fraction that brings it into a limit state or topples it; None without a level, or if no case does."""
+        reached = self.outcomes.others.get(state)
         if self.level is None or reached is None:
             return None
-        far = replace(self.outcomes, overturned=reached | self.outcomes.overturned)
-        found = self.evidence.of(far)
+        either = replace(self.outcomes, overturned=reached | self.outcomes.overturned)
+        found = self.evidence.of(either)
         return self.evidence.drawn(_fraction_at(self.level), found).estimate()
 
     @cached_property

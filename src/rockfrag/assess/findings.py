@@ -38,6 +38,9 @@ from rockfrag.words.findings import (
 
 MOST_SOURCES = 3  # Sources of uncertainty that are named in a line
 MOST_ASSUMPTIONS = 3  # Assumptions that are named in a line; the page has all
+MANY_LEAN = (
+    0.05  # Fraction of motions that leave it leaning from which it is said at once
+)
 MOST_CHANGES = 3  # Changes that are named in a line
 
 # Annual rates between which a level and a hazard fit each other [1/year]
@@ -139,7 +142,17 @@ def first_screen(found: Assessment) -> list[Finding]:
         said.append(how_far(found))
     if found.probability is not None:
         said.append(in_years(found, found.probability))
-    return [*said, advice(found)]
+    return [*said, *left_leaning(found), advice(found)]
+
+
+def left_leaning(found: Assessment) -> list[Finding]:
+    """How many motions leave it leaning at a wall or in a tie beside those that topple it, where they are many."""
+    if found.leans is None or found.fraction is None:
+        return []
+    leans = found.leans.value - found.fraction.value
+    return (
+        [finding(Text.LEFT_LEANING, part=percent(leans))] if leans > MANY_LEAN else []
+    )
 
 
 def few_earthquakes(found: Assessment) -> bool:

@@ -200,10 +200,15 @@ class ObjectOutcomes:
             overturned=self.overturned | other.overturned,
             rocked=self.rocked | other.rocked,
             others={
-                name: cases | other.others[name] for name, cases in self.others.items()
+                name: self._reached(name) | other._reached(name)
+                for name in {**self.others, **other.others}
             },
             lifting=np.minimum(self.lifts_from(), other.lifts_from()),
         )
+
+    def _reached(self, state: str) -> NDArray[np.bool_]:
+        """Cases that reach a declared limit state; what no case reaches short of a fall only falls do."""
+        return self.others.get(state, self.overturned)
 
     def outcomes(self) -> Observations:
         """All tests with their level, as :mod:`rockfrag.fragility` fits them."""
@@ -538,11 +543,14 @@ def fraction_at(
 
 
 def states_of(result: Outcomes) -> dict[str, Flags]:
-    """Which cases reached each limit state that needs no sliding, by its name, and which rocked :data:`FAR`."""
+    """Which cases reached each limit state that needs no sliding, by its name, and which rocked :data:`FAR`.
+
+    Those of what is held are left out where no case reaches them short of a fall.
+    """
     found = {
         state.name: np.asarray(state.reached(result))
         for state in limit_states()
-        if not (state.slipping or state.held)
+        if not state.slipping and (result.leaning.any() or not state.held)
     }
     with np.errstate(invalid="ignore"):
         found[STEPS] = np.asarray((result.peak_rotation > FAR).any(axis=-1))

@@ -56,6 +56,7 @@ class Text(StrEnum):
     COUNTED_SOME = auto()
     COUNTED_MOVED = auto()
     SHORT_OF_A_FALL = auto()
+    LEFT_LEANING = auto()
     FRACTION_BETWEEN = auto()
     FRACTION_AT_MOST = auto()
     FRACTION_AT_LEAST = auto()

@@ -59,6 +59,8 @@ def lines_in_plane(
     if response.overturned:
         body, time = response.overturned_body, response.overturning_time
         outcome = f"overturned: the {body}, at {time:.3f} s"
+    elif response.leaning:
+        outcome = "not overturned: it leans against a wall or hangs in a tie at the end"
     lines = [
         f"{record}: peak {peak_g:.4f} g, {samples} samples of {motion.dt} s",
         outcome,

@@ -19,6 +19,7 @@ from rockfrag.system.system import System
 Predicate = Callable[[Outcomes], NDArray[np.bool_]]
 
 OVERTURNS = "overturns"  # name of the limit state that every IDA curve counts
+LEANS = "leans"  # name of the limit state of what is held and rests beyond its balance
 ROCKS = "rocks"  # name of the limit state that begins at an exactly known acceleration
 # slip above which a body counts as having slid [m]: a displacement that one sees
 VISIBLE = 0.001
@@ -158,7 +159,7 @@ def _slides(outcomes: Outcomes) -> NDArray[np.bool_]:
 
 
 @limit_state(
-    "leans",
+    LEANS,
     60,
     "leaning",
     damage="Leans against a wall or hangs in a tie",

@@ -100,6 +100,7 @@ class Response:
         each interface does from now on) and ``slip`` [m] (tuples).
     overturned, overturned_body : whether a block fell, and its name, or ``""``
     overturning_time : when it lay down [s], NaN if it did not
+    leaning : whether a body that has not fallen rests beyond its balance at the end, against a wall or in a tie
     energy : table over time [J]
         ``kinetic``, ``potential``, ``input`` (work of the ground so far), ``lost_contact_1`` and on (in impacts of
         each contact so far, the ground's first), with friction ``lost_friction``, and ``residual``, which is zero
@@ -143,6 +144,7 @@ class Response:
     overturned: bool
     overturned_body: str
     overturning_time: float
+    leaning: bool = False
     energy: pd.DataFrame
     normal_force: Floats
     friction_force: Floats

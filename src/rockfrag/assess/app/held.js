@@ -36,7 +36,7 @@ const holding = (data, core, spatial) => {
   const IN_PLANE = {
     putty: (bears, { statue: { width } }) => ({
       bond_tension: bears,
-      bond_shear: UNBROKEN,
+      bond_shear: bears,
       bond_spread: core.call("pads_across", width),
     }),
     bracket: (bears, body) => fastened("bracket", bears, body),
@@ -52,7 +52,7 @@ const holding = (data, core, spatial) => {
     casters: (locked) => ({ friction: locked ? LOCKED_AT : ROLLS_AT }),
   };
   const IN_SPACE = {
-    putty: (bears) => ({ bond: { tension: bears, shear: UNBROKEN, padsAt: PADS_AT } }),
+    putty: (bears) => ({ bond: { tension: bears, shear: bears, padsAt: PADS_AT } }),
     wall: (distance) => ({ wall: distance }),
     casters: (locked) => ({ friction: locked ? LOCKED_AT : ROLLS_AT }),
   };

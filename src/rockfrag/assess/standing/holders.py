@@ -104,7 +104,7 @@ class Putty(Holder):
 
     Attributes
     ----------
-    tension : that all pads hold together [N]
+    tension : that all pads hold together [N], and as much in shear
     """
 
     tension: float = UNBROKEN
@@ -116,7 +116,7 @@ class Putty(Holder):
     def on(self, system: System) -> System:
         """Bond the uppermost body to what it stands on."""
         spread = pads_of(system.bodies[-1].base)
-        return hold(system, bonds=Bond(self.tension, UNBROKEN, spread))
+        return hold(system, bonds=Bond(self.tension, self.tension, spread))
 
     def called(self) -> Finding:
         """Such as putty that holds 120 N."""
@@ -473,6 +473,9 @@ def holders_beside(there: Sequence[Holder]) -> list[Holder]:
         useless |= {Bracket.key, Cords.key}
     if kinds & {Bracket.key, Cords.key}:
         useless.add(Isolator.key)
+    # between wheels and the floor there is no face for pads
+    if Casters.key in kinds:
+        useless.add(Putty.key)
     found = [holder for holder in usual if holder.key not in useless]
     if "wall" in kinds:
         found.append(WithoutWall())

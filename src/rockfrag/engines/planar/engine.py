@@ -351,6 +351,7 @@ class ContactRun:
             overturned=fallen > 0,
             overturned_body=("", *case.system.names)[fallen],
             overturning_time=float(outcome["overturning_time"]),
+            leaning=bool(outcome["leaning"]),
             energy=self._energies(),
             constraints=self._constraints(),
             plate=history["q"][:, 0].copy() if first else None,
