@@ -297,7 +297,7 @@ def some_held(rng, kind: str):
     stroke = float(rng.uniform(0.01, 0.3))
     holder, held = {
         "putty": (Putty(bears), {
-            "bond_tension": bears, "bond_shear": core.UNBROKEN, "bond_spread": core.pads_across(width),
+            "bond_tension": bears, "bond_shear": bears, "bond_spread": core.pads_across(width),
         }),
         "bracket": (Bracket(bears), ties(bracket, 1)),
         "cord": (Cords(bears), ties(cords, 2)),
@@ -479,7 +479,7 @@ def test_a_body_at_a_wall_or_on_wax_has_the_bits_of_the_package(tmp_path):
         if part is not None:
             pull = part * block["mass"] * GRAVITY
             held = Putty(pull).on(held)
-            bond = {"tension": pull, "shear": core.UNBROKEN, "padsAt": core.PADS_AT}
+            bond = {"tension": pull, "shear": pull, "padsAt": core.PADS_AT}
         systems.append(held)
         alone.append(free)
         told = {

@@ -7,7 +7,14 @@ import pytest
 from scipy import signal
 
 from rockfrag import Block, Stack
-from rockfrag.system import BilinearIsolator, SlidingPendulum, Tie, as_system, hold
+from rockfrag.system import (
+    BilinearIsolator,
+    SlidingPendulum,
+    Tie,
+    Wall,
+    as_system,
+    hold,
+)
 from rockfrag.system.support import Support
 
 from ...simulation.reference_bodies import random_motion
@@ -110,6 +117,38 @@ def test_the_stop_topples_what_comes_at_the_critical_speed() -> None:
     after = max(omega for (omega,) in events["omega_after"])
     assert after == pytest.approx(M * H * 0.999 * critical / inertia, rel=1e-4)
     assert (stays.overturned, topples.overturned) == (False, True)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+@pytest.mark.parametrize("friction", [2.0, 20.0])
+@pytest.mark.parametrize("below", ["plate", "light plate", "pedestal at a wall"])
+def test_what_is_stopped_below_sends_off_what_it_carries_at_once(
+    below, friction, restitution
+) -> None:
+    """ω⁺ = (1 + e) m h V/I_O, and the impulse of both bodies, wherever friction holds the foot: it needs .67 here.
+
+    No impulse between both would do as well but for the weight, and then nothing could go on.
+    """
+    slender, speed = Block(0.4, 1.2, M), 0.6
+    pulse = np.concatenate([np.full(21, -speed / 0.1025), np.zeros(60)])
+    mass = {"plate": 20.0, "light plate": 1e-3, "pedestal at a wall": 200.0}[below]
+    if below == "pedestal at a wall":
+        stack = as_system(Stack(Block(0.8, 0.3, mass), slender))
+        wall = Wall(0.46, height=0.2, restitution=restitution)
+        system, friction = hold(stack, wall), [0.0, friction]
+    else:
+        support = SlidingPendulum(mass=mass, stroke=0.06, restitution=restitution)
+        system = hold(as_system(slender), support=support)
+    found = run(system, pulse, friction=friction, closing=1e-6, dt=0.005)
+    sent = (1 + restitution) * speed
+    omega = M * 0.6 * sent / slender.pivot_inertia()
+    hits = found.contact_events
+    first = hits[hits["kind"] == "impact"].iloc[0]
+    assert first["omega_after"][-1] == pytest.approx(omega, rel=1e-6)
+    impulse = mass * sent + M * (sent - 0.6 * omega)
+    told = found.constraints["largest_impulse_n_s"].iloc[0]
+    assert told == pytest.approx(impulse, rel=1e-6)
+    assert found.paradoxes == 0
 
 
 def test_a_bilinear_isolator_is_a_spring_until_it_yields_and_its_loop_is_lost() -> None:

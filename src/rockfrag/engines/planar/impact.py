@@ -185,6 +185,10 @@ def strike(p, w, ah, av, closing):
     """
     before = kinetic_energy(p, w.v)
     has_laws = _read_laws(p, w, closing)
+    if p.count > 1 and _meets_wall(p, w):
+        # a body that a wall stops asks shear of what it carries, and no pressure: but for the weight that presses
+        # both together no impulse at all would do as well as one that sticks, and the motion could not go on
+        _press_together(p, w)
     _read_slips(p, w)
     _give_impulses(p, w, has_laws)
     _end_impact(p, w, ah, av, closing, before)
@@ -199,10 +203,27 @@ def strike_unapproached(p, w, ah, av, closing):
     before = kinetic_energy(p, w.v)
     _forget_laws(p, w)
     _read_slips(p, w)
-    for k in range(p.count):
-        w.v[3 * k + 1] -= VANISHING * p.speed
+    _press_together(p, w)
     _give_impulses(p, w, False)
     _end_impact(p, w, ah, av, closing, before)
+
+
+@kernel
+def _press_together(p, w):
+    """Let all bodies come down with a vanishing speed."""
+    for k in range(p.count):
+        w.v[3 * k + 1] -= VANISHING * p.speed
+
+
+@kernel
+def _meets_wall(p, w):
+    """Whether a body comes on against a wall, or the plate of an isolator against its stop."""
+    for k in range(p.count, p.contacts):
+        for end in range(2):
+            touches = w.touching[k, end] == 1
+            if touches and parting_speed(p, w, k, end) < -VANISHING * p.speed:
+                return True
+    return False
 
 
 @kernel
