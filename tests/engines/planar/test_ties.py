@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from rockfrag import Block, Stack
 from rockfrag.system import Tie, as_system, hold
@@ -55,6 +56,26 @@ def test_the_largest_force_of_a_cord_follows_from_the_rate_at_which_it_gets_taut
     static = M * (-acceleration * H - G * B) / TOP
     expected = static + math.sqrt(static**2 + stiffness * INERTIA * omega**2)
     assert found.constraints["largest_force_n"][0] == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_dashpot_bears_most_as_the_cord_gets_taut() -> None:
+    """By the work up to there under a constant acceleration: ω² = 2 ∫ M dθ/I_O, and F = c times the rate."""
+    b, h, top, slack, damping, pushed = 0.2, 0.6, 1.2, 0.01, 5000.0, 4.5
+    block = Block(2 * b, 2 * h, 100.0)
+
+    def longer(theta):
+        return top * math.sin(theta) + b * (1 - math.cos(theta))
+
+    taut = brentq(lambda theta: longer(theta) - slack, 0.0, 0.1, xtol=1e-14)
+    rise = b * math.sin(taut) - h * (1 - math.cos(taut))
+    across = h * math.sin(taut) + b * (1 - math.cos(taut))
+    work = block.mass * (pushed * across - G * rise)
+    omega = math.sqrt(2 * work / block.pivot_inertia())
+    rate = omega * (top * math.cos(taut) + b * math.sin(taut))
+    cord = Tie((0, 0, top), (-5000.0, 0, top), 4e4, slack=slack, damping=damping)
+    found = run(hold(as_system(block), cord), np.full(60, -pushed), friction=math.inf)
+    told = found.constraints["largest_force_n"].iloc[0]
+    assert told == pytest.approx(damping * rate, rel=1e-5)
 
 
 def test_a_tied_block_rocks_at_the_frequency_of_its_cord_less_its_own() -> None:

@@ -175,9 +175,10 @@ def change_ties(p, w, time):
             longer = p.is_bracket[t] == 0 or length > middle
             w.taut[t] = TAUT if longer else PUSHED
             w.outcome.hits[at] += 1
+            # a dashpot bears most as it begins
+            _note_tension(p, w, t)
             continue
-        force, _ = tension(p, w, w.q, w.v, t)
-        w.outcome.largest_force[at] = max(w.outcome.largest_force[at], abs(force))
+        force = _note_tension(p, w, t)
         # up to rounding: it fails either as its strength is reached or as its force vanishes
         if abs(force) >= p.tie_strength[t] * (1.0 - 1e-9):
             w.taut[t] = BROKEN
@@ -191,6 +192,13 @@ def change_ties(p, w, time):
 def note_tensions(p, w):
     """Keep the largest forces of ties in the state ``w.q``, ``w.v``."""
     for t in range(p.ties):
-        force, _ = tension(p, w, w.q, w.v, t)
-        at = p.tie_number[t]
-        w.outcome.largest_force[at] = max(w.outcome.largest_force[at], abs(force))
+        _note_tension(p, w, t)
+
+
+@kernel
+def _note_tension(p, w, t):
+    """Keep the largest force of tie t in the state ``w.q``, ``w.v``; return the force, positive as it pulls [N]."""
+    force, _ = tension(p, w, w.q, w.v, t)
+    at = p.tie_number[t]
+    w.outcome.largest_force[at] = max(w.outcome.largest_force[at], abs(force))
+    return force
