@@ -30,6 +30,36 @@ from .studies import Foreign, run_stages, write
 
 LONGEST = 400  # letters of a refusal
 
+MAIN = {
+    "wall": {"wall_m", "wall_cm", "wall_left_m"},
+    "putty": {"putty_n"},
+    "cord": {"cord_n_m"},
+    "bracket": {"bracket_n_m"},
+}
+"""Columns and keys of a study of which one must be there for a holder to hold, by how all of it begin."""
+
+
+def begun_in(held: dict[str, Any]) -> set[str]:
+    """Holders of which columns or keys say anything."""
+    return {name.split("_")[0] for name in held} & set(MAIN)
+
+
+def is_whole(held: dict[str, Any]) -> bool:
+    """Whether nothing is said of a holder that is not there."""
+    return all(MAIN[name] & set(held) for name in begun_in(held))
+
+
+def mostly_whole(
+    rng: random.Random, held: dict[str, Any], given: dict[str, Any]
+) -> dict[str, Any]:
+    """What is said of holders, mostly with all that they need; ``given``: all that may be said."""
+    if rng.random() < 0.3:
+        return held
+    needed = [
+        name for name in given if any(name in MAIN[each] for each in begun_in(held))
+    ]
+    return held | {name: given[name] for name in needed}
+
 
 def some(rng: random.Random, given: dict[str, Any], part: float = 0.3) -> dict:
     """Part of what may be said, one of it at least."""
@@ -85,26 +115,24 @@ ISOLATORS = (
 def arranged(rng: random.Random, folder: Path) -> None:
     """A row of ``arrangements.csv``, simulated."""
     (folder / "isolators.csv").write_text(ISOLATORS)
-    held = some(
-        rng,
-        {
-            "wall_cm": f"{rng.uniform(0, 9):.1f}",
-            "wall_left_m": "0.03",
-            "wall_height": f"{rng.uniform(1, 90):.0f} cm",
-            "wall_friction": f"{rng.uniform(0, 0.6):.2f}",
-            "wall_restitution": f"{rng.uniform(0, 1):.2f}",
-            "putty_n": f"{10 ** rng.uniform(0, 4):.0f}",
-            "putty_shear": "0.2 kN",
-            "putty_spread_cm": "5",
-            "cord_n_m": "50000",
-            "cord_slack_mm": "3",
-            "cord_n": "400",
-            "bracket_n_m": "1e6",
-            "bracket_slack_mm": "1",
-            "bracket_kgf": "60",
-            "casters": rng.choice(["free", "locked"]),
-        },
-    )
+    given = {
+        "wall_cm": f"{rng.uniform(0, 9):.1f}",
+        "wall_left_m": "0.03",
+        "wall_height": f"{rng.uniform(1, 90):.0f} cm",
+        "wall_friction": f"{rng.uniform(0, 0.6):.2f}",
+        "wall_restitution": f"{rng.uniform(0, 1):.2f}",
+        "putty_n": f"{10 ** rng.uniform(0, 4):.0f}",
+        "putty_shear": "0.2 kN",
+        "putty_spread_cm": "5",
+        "cord_n_m": "50000",
+        "cord_slack_mm": "3",
+        "cord_n": "400",
+        "bracket_n_m": "1e6",
+        "bracket_slack_mm": "1",
+        "bracket_kgf": "60",
+        "casters": rng.choice(["free", "locked"]),
+    }
+    held = mostly_whole(rng, some(rng, given), given)
     stands = rng.choice(["vase", "vase | plinth", "vase|dish", "vase|plinth|springs"])
     table = folder / "arrangements.csv"
     table.write_text(
@@ -116,6 +144,7 @@ def arranged(rng: random.Random, folder: Path) -> None:
     blocks = {"vase": Block(0.3, 0.9, 80.0), "plinth": Block(0.5, 0.4, 200.0)}
     isolators = read_isolators(folder / "isolators.csv")
     (system,), _ = read_configurations(table, blocks, isolators)
+    assert is_whole(held), held
     (motion,) = motions_of_noise(1)
     outcomes = overturns([system], [motion], scales=[1.0, 3.0], friction=0.5)
     assert len(outcomes.table("constraints")) == 2 * len(system.holding)
@@ -123,33 +152,32 @@ def arranged(rng: random.Random, folder: Path) -> None:
 
 def trials_held(rng: random.Random, folder: Path) -> None:
     """Trials of an object of a campaign, held, under a motion."""
-    held = some(
-        rng,
-        {
-            "wall_m": rng.uniform(0, 0.1),
-            "wall_left_m": 0.02,
-            "wall_height_m": rng.uniform(0.05, 0.9),
-            "wall_friction": 0.4,
-            "putty_n": 10 ** rng.uniform(0, 4),
-            "putty_spread_m": 0.05,
-            "cord_n_m": 5e4,
-            "cord_n": 300.0,
-            "bracket_n_m": 1e6,
-            "casters": rng.choice(["free", "locked"]),
-            "isolator": rng.choice(
-                [
-                    {"mass_kg": 9.0, "radius_m": 1.5, "friction": 0.06},
-                    {"mass_kg": 9.0, "stiffness_n_m": 900.0, "strength_n": 40.0},
-                    {"mass_kg": 9.0, "radius_m": 1.5, "strength_n": 40.0},
-                ]
-            ),
-        },
-    )
+    given = {
+        "wall_m": rng.uniform(0, 0.1),
+        "wall_left_m": 0.02,
+        "wall_height_m": rng.uniform(0.05, 0.9),
+        "wall_friction": 0.4,
+        "putty_n": 10 ** rng.uniform(0, 4),
+        "putty_spread_m": 0.05,
+        "cord_n_m": 5e4,
+        "cord_n": 300.0,
+        "bracket_n_m": 1e6,
+        "casters": rng.choice(["free", "locked"]),
+        "isolator": rng.choice(
+            [
+                {"mass_kg": 9.0, "radius_m": 1.5, "friction": 0.06},
+                {"mass_kg": 9.0, "stiffness_n_m": 900.0, "strength_n": 40.0},
+                {"mass_kg": 9.0, "radius_m": 1.5, "strength_n": 40.0},
+            ]
+        ),
+    }
+    held = mostly_whole(rng, some(rng, given), given)
     unknowns = {"edge_retreat_mm": (0.0, 5.0), "restitution": (0.8, 1.0)}
     if rng.random() < 0.3:
         unknowns = {"edge_retreat_mm": (0.0, 5.0), "friction": (0.3, 0.8)}
     study = SimpleNamespace(object={"held": held}, unknowns=unknowns, seed=1)
     found = trials_of(Block(0.3, 0.9, 80.0), study, 4)
+    assert is_whole(held), held
     (motion,) = motions_of_noise(1)
     outcomes = overturns(found.systems, [motion], scales=[2.0])
     assert np.isfinite(outcomes.peak_slip).all()

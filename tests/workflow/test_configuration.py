@@ -349,6 +349,47 @@ def test_arrangements_say_what_holds_the_bodies(tmp_path: Path):
         read_configurations(table, blocks, isolators)
 
 
+OF_A_HOLDER = {
+    "wall_height_m": ("of a wall", "wall_m or wall_left_m, its distance"),
+    "wall_friction": ("of a wall", "wall_m or wall_left_m, its distance"),
+    "wall_restitution": ("of a wall", "wall_m or wall_left_m, its distance"),
+    "putty_shear_n": ("of putty", "putty_n, its tensile capacity"),
+    "putty_spread_m": ("of putty", "putty_n, its tensile capacity"),
+    "cord_n": ("of cords", "cord_n_m, their stiffness"),
+    "cord_slack_m": ("of cords", "cord_n_m, their stiffness"),
+    "bracket_n": ("of a bracket", "bracket_n_m, its stiffness"),
+    "bracket_slack_m": ("of a bracket", "bracket_n_m, its stiffness"),
+}
+"""What is said of a holder that is not there, which left the object free without a word."""
+
+
+@pytest.mark.parametrize("column", OF_A_HOLDER)
+def test_what_is_stated_of_a_holder_that_is_not_there_is_refused(
+    tmp_path: Path, column: str
+):
+    of, needed = OF_A_HOLDER[column]
+    table, blocks = tmp_path / "a.csv", {"vase": Block(0.3, 0.9, 80.0)}
+    table.write_text(f"name,object,casters,{column}\ncase,vase,locked,0.5\n")
+    said = f"{table}, line 2, column {column}: is {of}; give {needed}, too."
+    with pytest.raises(InputError, match=re.escape(said)):
+        read_configurations(table, blocks)
+    # the title as the file has it
+    table.write_text(table.read_text().replace("cord_n\n", "cord_kgf\n"))
+    with pytest.raises(InputError, match=re.escape(needed)):
+        read_configurations(table, blocks)
+    source = CONFIG / "granite.yaml"
+    by_hand = {
+        **{"left_m": 0.2, "right_m": 0.2, "cg_height_m": 0.6, "height_m": 1.2},
+        **{"mass_kg": 90.0, "inertia_kg_m2": 20.0, "held": {column: 0.5}},
+    }
+    content = read_yaml(source)
+    keys = {name: content["unknowns"][name] for name in ("edge_retreat_mm",)}
+    content |= {"object": by_hand, "unknowns": keys | {"restitution": [0.8, 1.0]}}
+    said = f"{source}: key object.held.{column}: is {of}; give {needed}, too."
+    with pytest.raises(InputError, match=re.escape(said)):
+        any_study(content, source)
+
+
 def contacts(**keys: Any) -> dict[str, list]:
     """Contacts of each configuration of the small study of the project, with more keys."""
     source = CONFIG / "smoke.yaml"

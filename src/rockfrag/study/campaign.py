@@ -16,6 +16,7 @@ from rockfrag.base.files import is_file
 from rockfrag.base.tabular import read_table
 from rockfrag.records.files_beside import with_files_beside
 from rockfrag.study.heading import Heading, Steps, beside, checked_steps, heading_of
+from rockfrag.study.holding import stated_alone
 
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
 """Measures from which the motion of a commanded pulse follows."""
@@ -118,6 +119,8 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
         return path
 
     _check_unknowns(content, source)
+    if (alone := stated_alone(thing.get("held", {}))) is not None:
+        raise InputError("{}: key object.held.{}: {}.".format(source, *alone))
     conditioning = checked_steps(
         source, "conditioning", content.get("conditioning", ())
     )

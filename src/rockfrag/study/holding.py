@@ -34,6 +34,17 @@ COLUMNS = (
     *("wall_friction", "wall_restitution", "cord_n_m", "bracket_n_m", "casters"),
 )
 """Columns of an arrangement that say what holds it."""
+_WALL = (("wall_m", "wall_left_m"), "is of a wall", "its distance")
+_PUTTY = (("putty_n",), "is of putty", "its tensile capacity")
+_CORD = (("cord_n_m",), "is of cords", "their stiffness")
+_BRACKET = (("bracket_n_m",), "is of a bracket", "its stiffness")
+_PARTS = {
+    **dict.fromkeys(("wall_height_m", "wall_friction", "wall_restitution"), _WALL),
+    **dict.fromkeys(("putty_shear_n", "putty_spread_m"), _PUTTY),
+    **dict.fromkeys(("cord_slack_m", "cord_n"), _CORD),
+    **dict.fromkeys(("bracket_slack_m", "bracket_n"), _BRACKET),
+}
+"""Columns that hold nothing alone: of which others one must be stated too, of what they are, what those state."""
 _ISOLATOR_LENGTHS = ("radius_m", "stroke_m", "yield_m")
 _ISOLATOR = (
     *_ISOLATOR_LENGTHS,
@@ -130,7 +141,26 @@ def read_holders(row: Row) -> dict[str, float | str]:
             stated[column] = row.quantity(column)
         else:
             stated[column] = row.number(column)
+    if (alone := stated_alone(stated)) is not None:
+        raise row.error(*alone)
     return stated
+
+
+def stated_alone(stated: Mapping[str, Any]) -> tuple[str, str] | None:
+    """Find what is stated of a holder that is not there, such as the strength of a bracket without its stiffness.
+
+    Parameters
+    ----------
+    stated : values by the names of :data:`COLUMNS`
+
+    Returns
+    -------
+    The first such column, and what is wrong with it; None if there is none.
+    """
+    for column, (needed, of, what) in _PARTS.items():
+        if column in stated and not any(name in stated for name in needed):
+            return column, f"{of}; give {' or '.join(needed)}, {what}, too"
+    return None
 
 
 def held_as_stated(
@@ -147,7 +177,14 @@ def held_as_stated(
     Returns
     -------
     The system with its walls, ties, bonds and isolator.
+
+    Raises
+    ------
+    InputError
+        If something is stated of a holder that is not there.
     """
+    if (alone := stated_alone(stated)) is not None:
+        raise InputError("{}: {}.".format(*alone))
     constraints: list[Constraint] = [
         _wall(system, stated, column, side)
         for column, side in (("wall_m", 1), ("wall_left_m", -1))
