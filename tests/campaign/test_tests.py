@@ -18,6 +18,8 @@ from rockfrag.stages.campaign import trials_of
 from rockfrag.study.loading import load_any
 from rockfrag.system import mounts
 from rockfrag.system.blocks import Block
+from rockfrag.system.constraints import Wall
+from rockfrag.system.mesh import Shape
 
 COLUMNS = {"test": "test", "motion": "motion", "group": "input", "overturned": "fell"}
 BRACKETED = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
@@ -302,3 +304,33 @@ def test_the_trials_of_a_held_object_are_held():
     for each in found.systems:
         gap = each.constraints[0].distance - mounts.reach(each, 1)
         assert gap == pytest.approx(0.02)
+
+
+def test_the_planar_rival_of_a_held_mesh_is_held_as_the_mesh_is():
+    """The rival "in one plane" was the free object."""
+    corners = np.array(
+        [(x, y, z) for x in (-0.2, 0.2) for y in (-0.05, 0.05) for z in (-0.6, 0.6)]
+    )
+    stone = Shape(corners, 100.0, 9.0 * np.eye(3), 0.1, "stone.obj")
+    study = SimpleNamespace(
+        object={"held": {"wall_m": 0.02, "cord_n_m": 1e4, "putty_n": 50.0}},
+        unknowns={
+            **{"direction_deg": (0.0, 0.0), "contact_tolerance_mm": (0.1, 0.2)},
+            **{"edge_retreat_mm": (0.0, 0.0), "friction": (0.4, 0.5)},
+            "restitution": (0.8, 1.0),
+        },
+        seed=1,
+    )
+    found = trials_of(stone, study, 4)
+    for solid, flat in zip(found.systems, found.planar, strict=True):
+        names = ("wall 1", "tie 2", "tie 3", "bond 1")
+        assert not solid.planar and flat.planar
+        assert solid.holding == flat.holding == names
+        for ours, theirs in zip(flat.constraints, solid.constraints, strict=True):
+            places = ("distance",) if isinstance(ours, Wall) else ("point", "anchor")
+            for name in places:
+                assert getattr(ours, name) == pytest.approx(getattr(theirs, name))
+        ((_, ours),), ((_, theirs),) = flat.bonds, solid.bonds
+        assert ours.tension == theirs.tension == 50.0
+        assert ours.pads[0] == pytest.approx(theirs.pads[0]) == pytest.approx(0.2)
+        assert theirs.pads[1] == pytest.approx(0.05)

@@ -7,6 +7,7 @@ import pytest
 
 from rockfrag import Block, Column, InputError, Stack
 from rockfrag.system import System, as_system, hold, mounts
+from rockfrag.system.body import Circle, Polygon, interval_of
 from rockfrag.system.system import standing_points
 
 BLOCK = Block(0.3, 1.2, 100.0)
@@ -80,6 +81,26 @@ def test_what_holds_an_object_meets_its_upper_corners_and_ends_beside_all_that_s
     assert putty.spread == pytest.approx((0.15, 0.15))
     assert mounts.putty_under(system, 80.0, 30.0, 0.1).spread == (0.1, 0.1)
     assert mounts.putty_under(system, 80.0, 30.0, 0.1).shear == 30.0
+
+
+def test_putty_of_a_body_in_space_lies_under_its_base_both_ways():
+    """Half of the width was taken across it too, where a base is less deep."""
+    box = as_system(Block(0.4, 1.2, 100.0, depth=0.1))
+    assert mounts.putty_under(box, 80.0).spread == pytest.approx((0.2, 0.05))
+    # as far as is stated, and not beyond its edge across that
+    stated = mounts.putty_under(box, 80.0, spread=0.15)
+    assert stated.spread == pytest.approx((0.15, 0.05))
+    assert mounts.putty_under(box, 80.0, spread=0.03).spread == (0.03, 0.03)
+    for base in (
+        Circle(0.2),
+        Polygon(((-0.3, -0.2), (0.25, -0.25), (0.35, 0.1), (-0.2, 0.25))),
+    ):
+        wide, deep = mounts.pads_under(base, 1.0)
+        for x, y in ((wide, deep), (-wide, deep), (-wide, -deep), (wide, -deep)):
+            for angle in (0.0, 0.7, 1.9, 2.6, 3.4, 5.0):
+                along = math.cos(angle), math.sin(angle)
+                end = interval_of(base, along).right
+                assert x * along[0] + y * along[1] <= end + 1e-12
 
 
 def test_a_bracket_reaches_to_the_wall_that_is_near_and_is_short_where_none_is():

@@ -168,8 +168,12 @@ def trials_of(
     trials = sample_trials(thing, study.unknowns, count, study.seed)
     if "held" not in study.object:
         return trials
-    systems = (held_as_stated(each, study.object["held"]) for each in trials.systems)
-    return replace(trials, systems=tuple(systems))
+    # the planar body, a rival of a mesh in space, is held as that is
+    systems, planar = (
+        tuple(held_as_stated(each, study.object["held"]) for each in all_trials)
+        for all_trials in (trials.systems, trials.planar)
+    )
+    return replace(trials, systems=systems, planar=planar)
 
 
 def object_of(study: CampaignStudy) -> Shape | Block:

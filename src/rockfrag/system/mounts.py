@@ -1,12 +1,14 @@
 """Usual ways to hold an object: a wall beside it, putty under it, cords and brackets at its top, casters.
 
-In: a planar system and what people state of a mount.  Out: the walls, ties and bonds of ``docs/holding.md``.
+In: a system and what people state of a mount.  Out: the walls, ties and bonds of ``docs/holding.md``.
 """
 
 import math
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import number_from_zero, positive_number
+from rockfrag.system import footprint
+from rockfrag.system.body import Circle, Interval, Outline
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.contact import Friction
@@ -135,14 +137,39 @@ def putty_under(
     ----------
     system, tension : the system, and the tensile capacity of all pads [N]
     shear : their capacity in shear [N]; None: the same
-    spread : half the distance of the pads [m]; None: they lie at the ends of the base
+    spread
+        Half the distance of the pads [m]; None: they lie at the ends of the base, in space at its corners or
+        within it (:func:`pads_under`). Across the plane of x they lie no further out than these.
 
     Returns
     -------
     The bond.
     """
-    half = system.in_plane().bodies[-1].width / 2 if spread is None else spread
-    return Bond(tension, tension if shear is None else shear, (half, half))
+    body = system.bodies[-1]
+    along, across = pads_under(body.base, 1.0)
+    if spread is not None:
+        along, across = spread, spread if body.planar else min(spread, across)
+    return Bond(tension, tension if shear is None else shear, (along, across))
+
+
+def pads_under(base: Outline, part: float) -> tuple[float, float]:
+    """Half the distances of four pads under a base along its axes [m].
+
+    Parameters
+    ----------
+    base : that they lie under
+    part : distance of the pads from its middle over that of its edge [-]
+
+    Returns
+    -------
+    Both half distances [m]; of a planar base the same.
+    """
+    if isinstance(base, Interval):
+        half = part * (base.right - base.left) / 2
+        return half, half
+    if isinstance(base, Circle):
+        return footprint.pads_in_circle(base.radius, part)
+    return footprint.pads_in_polygon(base.vertices, len(base.vertices), part)
 
 
 def on_casters(system: System, word: str) -> System:

@@ -28,7 +28,6 @@ from rockfrag.assess.core.holding import (
     SLIDES_AT,
     UNBROKEN,
     bracket_damping,
-    pads_across,
     rounded_up,
     tell_springs,
     tie_stiffness,
@@ -41,7 +40,7 @@ from rockfrag.system.body import Circle, Interval, Outline, Polygon
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.contact import Friction
-from rockfrag.system.mounts import ROLLING
+from rockfrag.system.mounts import ROLLING, pads_under
 from rockfrag.system.support import (
     YIELDS_AT,
     BilinearIsolator,
@@ -486,12 +485,7 @@ def holders_beside(there: Sequence[Holder]) -> list[Holder]:
 
 def pads_of(base: Outline) -> tuple[float, float]:
     """Half the distances of four pads under a base along its axes [m]."""
-    if isinstance(base, Interval):
-        half = pads_across(base.right - base.left)
-        return half, half
-    if isinstance(base, Circle):
-        return footprint.pads_in_circle(base.radius, PADS_AT)
-    return footprint.pads_in_polygon(base.vertices, len(base.vertices), PADS_AT)
+    return pads_under(base, PADS_AT)
 
 
 def nearest_edge(base: Polygon) -> tuple[float, tuple[float, float]]:
