@@ -1,6 +1,7 @@
 """Fragility of an inventory for ShakeCast, NED and pelicun: as documented, and by their own readers."""
 
 import csv
+import json
 import os
 import re
 import subprocess
@@ -170,6 +171,48 @@ def test_the_table_of_ned_has_its_columns_choices_and_units(on_floor, asked):
     assert float(rows["median"][1]) == pytest.approx(median, abs=1e-4)
     assert ned_reference()["reference_label"][0] == "rockfrag"
     assert set(table["reference"]) == {f"rockfrag-{ned_reference()['csl_year'][0]}"}
+
+
+HELD = {
+    "putty": ("200 N", "Anchored", "wax or putty"),
+    "bracket": ("300 N", "Anchored", "a bracket"),
+    "cord": ("300 N", "Anchored", "cords"),
+    "isolator": ("20 cm", "Isolated", "a sliding isolator"),
+    "wall": ("5 cm", "Unanchored", "a wall behind it"),
+    "casters": ("locked", "Unanchored", "locked casters"),
+}
+"""By columns of an inventory: what stands in them, how NED says it is attached, and with what."""
+
+
+@pytest.mark.parametrize("column", HELD)
+def test_the_words_follow_what_holds_an_object_as_the_numbers_do(
+    column, on_floor, of_ground, tmp_path
+):
+    """All of them called it free-standing and unanchored."""
+    value, attached, words = HELD[column]
+    table = tmp_path / "held.csv"
+    table.write_text(f"name,width,height,{column}\nurn,15 cm,60 cm,{value}\n")
+    (request,), faults = read_inventory(table, {})
+    assert not faults
+    free = on_floor[1]
+    held = replace(free, request=request)
+    rows = ned_table([free, held])
+    detail, about = rows["comp_detail"].tolist(), rows["comp_description"].tolist()
+    assert detail == ["Unanchored"] * 2 + [attached] * 2
+    assert about[0] == "Free-standing object, urn, 0.15 × 0.6 m"
+    assert about[2] == f"Object with {words}, urn, 0.15 × 0.6 m"
+    placed = replace(request, coordinates=(35.0, 135.0))
+    in_facilities = replace(of_ground[1], request=placed)
+    facilities, _ = shakecast_tables([of_ground[1], in_facilities])
+    said = facilities["DESCRIPTION"].tolist()
+    assert "free-standing" in said[0] and words not in said[0]
+    assert "free-standing" not in said[1] and f", with {words};" in said[1]
+    named = replace(held, request=replace(request, name="held"))
+    curves, notes = fragility_rows([free, named]), tmp_path / "notes.json"
+    write_simcenter(curves, tmp_path / "curves.csv", notes, model_error=False)
+    known = json.loads(notes.read_text(encoding="utf-8"))
+    assert known["ROCKFRAG.urn"]["Description"] == "Free-standing urn"
+    assert known["ROCKFRAG.held"]["Description"] == f"held, with {words}"
 
 
 def test_ned_imports_and_ingests_the_table(on_floor, tmp_path):

@@ -1,5 +1,6 @@
 """Random combinations of what holds a body, at every door: each is answered, or refused in one sentence."""
 
+import json
 import random
 import re
 from pathlib import Path
@@ -282,6 +283,15 @@ def test_a_study_of_what_holds_an_object_goes_on_to_its_report(tmp_path):
     }
     page = (results / "report.html").read_text(encoding="utf-8")
     assert "on wax" in page and not re.search(r">\s*nan\s*<", page)
+    # what is held is not said to stand free, for other programs neither
+    notes = (each.read_text("utf-8") for each in results.rglob("exports/*.json"))
+    said = {
+        about["Description"]
+        for known in map(json.loads, notes)
+        for about in known.values()
+    }
+    assert "on wax, with bond 2" in said and "Free-standing alone" in said
+    assert not any("Free-standing" in each for each in said - {"Free-standing alone"})
 
 
 DOORS = (simulated, arranged, trials_held, assessed, listed)

@@ -12,6 +12,7 @@ import pandas as pd
 
 from rockfrag import __version__
 from rockfrag.aftermath.object_fragility import ObjectFragility
+from rockfrag.assess.standing.holders import Fastener, Isolator, Putty
 from rockfrag.fragility.exports import identifiers
 from rockfrag.outcomes.limit_states import limit_state_named
 
@@ -23,6 +24,24 @@ NED_METRIC = {
 """Measure and unit as NED has them, with the factor to that unit."""
 
 ON_FLOOR = {"PGA": "PFA", "PGV": "PFV"}
+
+
+def _attachment(fragility: ObjectFragility) -> str:
+    """How an object is attached, in the words of NED; a wall beside it and casters attach nothing."""
+    holders = fragility.request.objects.under.holders
+    said = []
+    if any(isinstance(each, Putty | Fastener) for each in holders):
+        said.append("Anchored")
+    if any(isinstance(each, Isolator) for each in holders):
+        said.append("Isolated")
+    return ", ".join(said) or "Unanchored"
+
+
+def _description(fragility: ObjectFragility) -> str:
+    """What it is, such as ``Object with wax or putty, urn, 0.15 × 0.6 m``."""
+    held = fragility.held_by
+    kind = f"Object with {held}" if held else "Free-standing object"
+    return f"{kind}, {fragility.request.name}, {fragility.size}"
 
 
 def ned_table(
@@ -51,10 +70,10 @@ def ned_table(
                     "reference": f"{LABEL}-{YEAR}",
                     "model_id": names[each.request.name],
                     "p58_fragility": "",
-                    "comp_detail": "Unanchored",
+                    "comp_detail": _attachment(each),
                     "material": "",
                     "size_class": each.size,
-                    "comp_description": f"Free-standing object, {each.request.name}, {each.size}",
+                    "comp_description": _description(each),
                     "reviewer": "",
                     "source": f"rockfrag {__version__}",
                     "edp_metric": metric,
@@ -84,7 +103,7 @@ def ned_reference() -> pd.DataFrame:
             {
                 "reference_label": LABEL,
                 "study_type": "Analytical Study",
-                "comp_type": "Free-standing contents",
+                "comp_type": "Contents",
                 "pdf_saved": "False",
                 "csl_type": "software",
                 "csl_title": f"rockfrag {__version__}: rocking and overturning of free-standing objects",
@@ -119,6 +138,7 @@ def fragility_rows(fragilities: Sequence[ObjectFragility]) -> pd.DataFrame:
             rows.append(
                 {
                     "configuration": each.request.name,
+                    "held_by": each.held_by,
                     "state": state,
                     "im": ON_FLOOR[each.measure.imt],
                     "unit": each.measure.unit,

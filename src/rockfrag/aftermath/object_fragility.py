@@ -20,6 +20,8 @@ from rockfrag.assess.request import Level, Request
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 from rockfrag.runtime.progress import Progress
+from rockfrag.words.catalogue import catalogue
+from rockfrag.words.findings import listed
 
 OF_STATICS = 0.1
 """Standard deviation of ln level of what is not known of where rocking begins [-]: contact, centre of gravity. An
@@ -66,6 +68,12 @@ class ObjectFragility:
         """Size in words, such as ``0.35 × 1.2 m``."""
         block = self.request.objects.block
         return f"{block.width:.3g} × {block.height:.3g} m"
+
+    @property
+    def held_by(self) -> str:
+        """What holds it in words, such as ``wax or putty``; empty of what stands free."""
+        holders = self.request.objects.under.holders
+        return catalogue().say(listed([each.short for each in holders]))
 
 
 def object_fragilities(

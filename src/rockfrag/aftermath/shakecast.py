@@ -43,7 +43,8 @@ def _facts(fragilities: Sequence[ObjectFragility], kind: str) -> list[dict[str, 
             raise InputError(
                 f"ShakeCast: {name!r} has no place; give columns latitude and longitude, or --at for all."
             )
-        description = f"{name}, {each.size}, free-standing; {each.motions} motions"
+        stands = f"with {each.held_by}" if each.held_by else "free-standing"
+        description = f"{name}, {each.size}, {stands}; {each.motions} motions"
         rows.append(
             {
                 "id": short,

@@ -281,7 +281,7 @@ def write_nrml(
             {"id": name, "comment": comment, **_function(name, curves[name], by)}
         )
     description = [
-        "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
+        "Bodies that rock in earthquakes. The comment before each function gives its limits, its "
         "goodness of fit and the number of its motions.",
         *dict.fromkeys(filter(None, sentences)),
     ]
@@ -432,7 +432,8 @@ def write_simcenter(
     Parameters
     ----------
     table : as of :func:`write_nrml`
-        PGA and PGV are demands of the ground, PFA and PFV of the floor on which the object stands.
+        PGA and PGV are demands of the ground, PFA and PFV of the floor on which the object stands. What holds an
+        object may stand in a column ``held_by``, empty of what stands free.
     csv_path, json_path : files to write
     by : column that names the curve; the ID is ``ROCKFRAG.`` and its letters and digits
     fractions
@@ -442,7 +443,7 @@ def write_simcenter(
     """
     about = {
         "ShortName": "rockfrag",
-        "Description": "Overturning of free-standing blocks in earthquakes",
+        "Description": "Overturning of objects in earthquakes",
         "Version": "1.0",
     }
     notes: dict[str, object] = {"_GeneralInformation": about}
@@ -484,8 +485,11 @@ def _component(
         limit_states[f"LS{number}"] = {f"DS{number}": damage}
         said.append(f"{words}: {_facts(curve)} {curve.holds}".rstrip())
     last = list(states.values())[-1]
+    named, held = str(last.row[by]), last.row.get("held_by")
+    # of a table whose other rows alone say it, an empty cell is no text
+    is_held = isinstance(held, str) and bool(held)
     note: dict[str, object] = {
-        "Description": f"Free-standing {last.row[by]}",
+        "Description": f"{named}, with {held}" if is_held else f"Free-standing {named}",
         "Comments": " ".join(said),
         "SuggestedComponentBlockSize": "1 EA",
         "RoundUpToIntegerQuantity": "True",

@@ -33,6 +33,7 @@ from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.shaketable.definitions import Swept
 from rockfrag.stages.ida import ida_curves_of
 from rockfrag.stages.job import Job, Results
+from rockfrag.study.holding import held_by
 from rockfrag.study.study import Study
 from rockfrag.system.system import uplift_ratios
 
@@ -65,8 +66,12 @@ def run(job: Job[Study]) -> Results:
     yield "fragility_floors_fractions", floor_fractions
     exports = job.folder / "exports"
     exports.mkdir(parents=True, exist_ok=True)
+    held = {system.name: held_by(system) for system in job.study.configurations}
     written = export_curves(
-        by_floor, exports, floor_fractions, model_error=settings.model_error
+        by_floor.assign(held_by=by_floor["configuration"].map(held)),
+        exports,
+        floor_fractions,
+        model_error=settings.model_error,
     )
     exported = ", ".join(written)
     job.log.info("exported %s", exported or "no curve")

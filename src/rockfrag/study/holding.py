@@ -210,6 +210,24 @@ def held_as_stated(
     return hold(system, *constraints, bonds=bond, support=support)
 
 
+def held_by(system: System) -> str:
+    """What holds an arrangement, in words.
+
+    Parameters
+    ----------
+    system : of a study
+
+    Returns
+    -------
+    Such as ``wall 1, bond 2``, by the names in tables of what each had to bear; empty if it stands free.
+    """
+    named = {"support": "isolator"}
+    words = [named.get(name, name) for name in system.holding]
+    if system.contacts[0].friction == mounts.ROLLING:
+        words.append("casters that roll")
+    return ", ".join(words)
+
+
 def _wall(system: System, stated: Mapping[str, Any], column: str, side: int) -> Wall:
     """Return the wall that a column names, on the right (+1) or the left side."""
     mu = stated.get("wall_friction", 0.0)
