@@ -13,6 +13,7 @@ from rockfrag.engines.pure_rocking.ensembles import run_blocks
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import with_measures
 from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.report.sections import tested
 from rockfrag.shaketable.tests_table import read_measured
 from rockfrag.simulation import overturns
 from rockfrag.simulation.options import system_of
@@ -20,6 +21,7 @@ from rockfrag.stages import tests as tests_stage
 from rockfrag.stages.fragility import export_curves, floor_curves
 from rockfrag.stages.ida import as_recorded, ida_table
 from rockfrag.stages.pedestal import measured_tables, pedestal_tables
+from rockfrag.study.holding import held_as_stated
 from rockfrag.study.study import Amplitudes
 from rockfrag.system.blocks import Block, Stack
 
@@ -222,3 +224,46 @@ def test_with_friction_a_case_is_integrated_once_with_and_once_without_sliding(
     rough = table["overturned_without_sliding"]
     assert rough.tolist() == held.overturned.ravel().tolist() == [False, True, True]
     assert not table["overturned"].any()
+
+
+HELD = {
+    # what is stated, what it is said to be held by, and whether statics of the free body say when it rocks
+    "free": ({}, "", True),
+    "wall": ({"wall_m": 0.03}, "wall 1", True),
+    "touching": ({"wall_m": 0.0, "wall_left_m": 0.0}, "wall 1, wall 2", False),
+    "slack": ({"cord_n_m": 1e5, "cord_slack_m": 0.01}, "tie 1, tie 2", True),
+    # what stretches bears nothing before the body moves
+    "taut": ({"cord_n_m": 1e5}, "tie 1, tie 2", True),
+    "bracket": ({"bracket_n_m": 1e6, "bracket_n": 900.0}, "tie 1", True),
+    "wax": ({"putty_n": 400.0}, "bond 1", False),
+    "rolling": ({"casters": "free"}, "casters that roll", False),
+    "isolated": ({"isolator": {"mass_kg": 9.0, "radius_m": 1.0}}, "", False),
+}
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_bodies_are_said_to_rock_from_where_a_pulse_lifts_them(name):
+    """The table gave what is held the acceleration of the free block, and the floor under an isolator."""
+    stated, held, like_free = HELD[name]
+    system = held_as_stated(replace(STATUE.system(), name=name), stated)
+    (row,) = tests_stage.bodies_table([system]).to_dict("records")
+    assert row["held_by"] == held
+    assert row["stands_on"] == ("isolator" if name == "isolated" else "")
+    # a short constant acceleration of .97 and 1.03 times the width over the height, g/4
+    rocks = []
+    for part in (0.97, 1.03):
+        pushed = Motion(np.r_[np.full(20, part * 9.81 / 4), np.zeros(5)], 0.01)
+        found = overturns([system], [pushed])
+        rocks.append(bool((found.peak_rotation > 1e-7).any()))
+    assert np.isfinite(row["uplift_m_s2"]) == like_free == (rocks == [False, True])
+    if like_free:
+        assert row["uplift_m_s2"] == pytest.approx(9.81 / 4)
+    results = SimpleNamespace(
+        table=lambda _: tests_stage.bodies_table([system]),
+        study=SimpleNamespace(slides=False, vertical=False),
+    )
+    section = tested.bodies(results)
+    said = " ".join([section.message, *section.paragraphs, *section.parts])
+    assert ("0.250" in said) == like_free and "nan" not in said
+    assert ("simulation alone says" in said) != like_free
+    assert ("Held by" in said) == bool(held) and f">{held}<" in said

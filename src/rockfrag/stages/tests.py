@@ -4,6 +4,7 @@ In: IDA curves, motions [m/s²], a shaker. Out: tables of tests with amplitudes 
 ``docs/definitions.md``, ``docs/shaketable.md``.
 """
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +27,7 @@ from rockfrag.shaketable.shaker import shaker_table
 from rockfrag.simulation import overturns, simulate
 from rockfrag.stages.ida import ground_motions_of, ida_curves_of
 from rockfrag.stages.job import Job, Results
+from rockfrag.study.holding import held_by, rocks_like_free
 from rockfrag.study.study import Study
 from rockfrag.system import geometry
 from rockfrag.system.system import System, uplift_ratios
@@ -108,19 +110,25 @@ def limited_tests(
 def bodies_table(configurations: Sequence[System]) -> pd.DataFrame:
     """Return what is tested, a row per configuration.
 
-    Columns: ``configuration``, ``object``, ``stands_on`` (the pedestal, empty for the floor); of the object
-    ``width_m``, ``height_m``, ``mass_kg``, ``slenderness`` (height over width [-]), ``critical_angle_rad``,
-    ``radius_m``, ``frequency_1_s``; ``uplift_m_s2``: least acceleration of the floor at which anything starts to
-    rock [m/s²].
+    Columns: ``configuration``, ``object``, ``stands_on`` (the pedestal and an isolator, empty for the floor),
+    ``held_by`` (what else holds it, empty if nothing); of the object ``width_m``, ``height_m``, ``mass_kg``,
+    ``slenderness`` (height over width [-]), ``critical_angle_rad``, ``radius_m``, ``frequency_1_s``;
+    ``uplift_m_s2``: least acceleration of the floor at which anything starts to rock [m/s²], NaN where the statics
+    of free bodies do not say it.
     """
     rows = []
     for configuration in configurations:
         body, shape = configuration.bodies[-1], configuration.shapes[-1]
+        isolator = () if configuration.support is None else ("isolator",)
+        uplift = math.nan
+        if rocks_like_free(configuration):
+            uplift = GRAVITY * min(uplift_ratios(configuration))
         rows.append(
             {
                 "configuration": configuration.name,
                 "object": configuration.names[-1],
-                "stands_on": "|".join(configuration.names[-2::-1]),
+                "stands_on": "|".join((*configuration.names[-2::-1], *isolator)),
+                "held_by": held_by(replace(configuration, support=None)),
                 "width_m": body.width,
                 "height_m": body.height,
                 "mass_kg": body.mass,
@@ -130,7 +138,7 @@ def bodies_table(configurations: Sequence[System]) -> pd.DataFrame:
                 ),
                 "radius_m": geometry.radius(shape, 1),
                 "frequency_1_s": geometry.frequency(shape, 1, GRAVITY),
-                "uplift_m_s2": GRAVITY * min(uplift_ratios(configuration)),
+                "uplift_m_s2": uplift,
             }
         )
     return pd.DataFrame(rows)

@@ -34,6 +34,7 @@ COLUMNS = (
     *("wall_friction", "wall_restitution", "cord_n_m", "bracket_n_m", "casters"),
 )
 """Columns of an arrangement that say what holds it."""
+TOUCHES = 1e-9  # gap of a wall that is none, but for rounding [m]
 _WALL = (("wall_m", "wall_left_m"), "is of a wall", "its distance")
 _PUTTY = (("putty_n",), "is of putty", "its tensile capacity")
 _CORD = (("cord_n_m",), "is of cords", "their stiffness")
@@ -226,6 +227,29 @@ def held_by(system: System) -> str:
     if system.contacts[0].friction == mounts.ROLLING:
         words.append("casters that roll")
     return ", ".join(words)
+
+
+def rocks_like_free(system: System) -> bool:
+    """Whether a planar arrangement starts to rock where it would if nothing held it.
+
+    A tie bears nothing before what it holds has moved, and a wall that is off nothing before it is hit.
+
+    Parameters
+    ----------
+    system : at rest
+
+    Returns
+    -------
+    False with a bond, an isolator, a wall that touches, or casters that roll.
+    """
+    if system.bonds or system.support is not None:
+        return False
+    if system.contacts[0].friction == mounts.ROLLING:
+        return False
+    walls = [each for each in system.constraints if isinstance(each, Wall)]
+    return all(
+        wall.distance > mounts.reach(system, wall.side) + TOUCHES for wall in walls
+    )
 
 
 def _wall(system: System, stated: Mapping[str, Any], column: str, side: int) -> Wall:

@@ -230,6 +230,7 @@ def _scaling_html(scaling: pd.DataFrame) -> Markup:
 def bodies(results: Results) -> Section:
     """The objects, alone and on their pedestals."""
     table = results.table("bodies")
+    is_held = table["held_by"].fillna("") != ""
     shown = table.assign(
         stands_on=table["stands_on"].replace("", "the floor"),
         width_cm=table["width_m"] * CENTIMETRES_PER_METRE,
@@ -239,6 +240,7 @@ def bodies(results: Results) -> Section:
     columns = [
         column("configuration"),
         column("stands_on"),
+        *([column("held_by")] if is_held.any() else []),
         column("width_cm", decimals=1),
         column("height_cm", decimals=1),
         column("mass_kg", decimals=3),
@@ -248,19 +250,29 @@ def bodies(results: Results) -> Section:
         column("uplift_g", "Starts to rock at [g]", decimals=3),
     ]
     caption = "The objects, alone and on their pedestals."
-    low, high = number(shown["uplift_g"].min(), 2), number(shown["uplift_g"].max(), 2)
-    span = f"at {low} g" if low == high else f"between {low} and {high} g"
-    condition = ""
-    if results.study.slides or results.study.vertical:
-        condition = " if the surfaces neither slip nor move vertically"
-    message = f"{sentence(counted(len(shown), 'configuration'))}; rocking starts {span} at the base{condition}."
-    words = (
+    message = sentence(counted(len(shown), "configuration"))
+    known = shown["uplift_g"].dropna()
+    if known.empty:
+        message += "; simulation alone says when rocking starts."
+    else:
+        low, high = number(known.min(), 2), number(known.max(), 2)
+        span = f"at {low} g" if low == high else f"between {low} and {high} g"
+        condition = ""
+        if results.study.slides or results.study.vertical:
+            condition = " if the surfaces neither slip nor move vertically"
+        message += f"; rocking starts {span} at the base{condition}."
+    words = [
         "Rigid blocks that rock on two edges in the plane of the motion. The critical angle is the angle "
         "between the diagonal and the vertical. A block starts to rock when the acceleration of its base "
         "exceeds the one given, and overturns if it rotates too far beyond the critical angle."
-    )
+    ]
+    if len(known) < len(shown):
+        words.append(
+            "Where no acceleration is given the block is bonded, stands on an isolator or on casters, or touches "
+            "a wall, and simulation alone says when it starts to rock."
+        )
     return Section(
-        "bodies", "Bodies", message, [words], [table_html(shown, columns, caption)]
+        "bodies", "Bodies", message, words, [table_html(shown, columns, caption)]
     )
 
 
