@@ -25,6 +25,7 @@ from rockfrag.report.live.live_space import Standing, live_in_space
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page
 from rockfrag.simulation.options import system_of
+from rockfrag.study.holding import held_as_stated
 from rockfrag.system.system import turned_about_vertical
 from rockfrag.words.catalogue import catalogue
 
@@ -157,6 +158,48 @@ def test_the_played_page_is_small_and_the_same_every_time(tmp_path: Path):
         write_play_page(
             STATUE, Motion(np.zeros(100), 0.01, "still", {}), tmp_path / "c.html"
         )
+
+
+HELD_IN_SPACE = Block(0.3, 1.2, 110.0, depth=0.4)
+NOT_PLAYED = {
+    "wall": (STATUE, {"wall_m": 0.02}, "it has a wall, and"),
+    "wax": (STATUE, {"putty_n": 90.0}, "it has a bond, and"),
+    "isolator": (STATUE, {"isolator": {"mass_kg": 9.0}}, "it has an isolator, and"),
+    "casters": (STATUE, {"casters": "free"}, "it has friction, and"),
+    "wax in space": (HELD_IN_SPACE, {"putty_n": 90.0}, "it has a bond, and"),
+    "casters in space": (HELD_IN_SPACE, {"casters": "free"}, "it has friction, and"),
+    "both in space": (
+        HELD_IN_SPACE,
+        {"wall_m": 0.02, "cord_n_m": 1e5},
+        "it has a wall and a tie, and",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", NOT_PLAYED)
+def test_a_page_shows_no_free_body_beside_the_numbers_of_a_held_one(
+    tmp_path: Path, name: str
+):
+    """In space the view was of the free body; in the plane the sentence spoke of too many bodies."""
+    block, stated, said = NOT_PLAYED[name]
+    held, shaking = held_as_stated(block.system(), stated), motion()
+    if not held.planar:
+        shaking = GroundMotion(motion(), motion("other"))
+    with pytest.raises(InputError) as refused:
+        write_play_page(held, shaking, tmp_path / "held.html")
+    assert str(refused.value) == (
+        f"body: {said} a page does not simulate that; leave it out, or use rockfrag simulate."
+    )
+    write_play_page(block, shaking, tmp_path / "free.html")
+
+
+def test_a_page_refuses_what_no_page_knows_by_its_own_reason(tmp_path: Path):
+    three = Column((Block(0.5, 0.3, 150.0), Block(0.4, 0.3, 100.0), STATUE))
+    with pytest.raises(InputError, match="--pedestal: a page simulates two bodies"):
+        write_play_page(three, motion(), tmp_path / "a.html")
+    measured = system_of(STATUE, restitution=0.9)
+    with pytest.raises(InputError, match="it has a measured restitution, and"):
+        write_play_page(measured, motion(), tmp_path / "a.html")
 
 
 def test_the_live_part_is_in_the_language_of_its_page():

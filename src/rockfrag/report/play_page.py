@@ -13,6 +13,7 @@ import numpy as np
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import write_text
 from rockfrag.base.units import GRAVITY
+from rockfrag.engines.contract import Request, Support, Wish, wishes
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import AMPLITUDES_G, live_kernel
 from rockfrag.report.live import live_space as space
@@ -21,8 +22,12 @@ from rockfrag.report.part import Answer, Finding
 from rockfrag.simulation import overturns
 from rockfrag.system.blocks import SystemLike, as_system
 from rockfrag.system.body import Circle, RigidBody
+from rockfrag.system.system import System
 from rockfrag.web import in_page
-from rockfrag.words.sentences import counted, number, sentence
+from rockfrag.words.sentences import counted, listed, number, sentence
+
+IN_SPACE = frozenset({Wish.SPACE, Wish.VERTICAL, Wish.HISTORY})
+"""What a page's simulation in space knows beside the body itself."""
 
 MOST_SAMPLES = 20_000
 """Times of a record for which the page stays below 400 kB, and below 700 kB with two components."""
@@ -33,14 +38,20 @@ def write_play_page(
 ) -> None:
     """Write the page of a body that rocks under a motion of at most ``MOST_SAMPLES``.
 
-    It is at most two blocks under one component, or a body in space under both.
+    It is at most two blocks under one component, or a body in space under both, that nothing holds.
 
     Parameters
     ----------
     body, motion : what rocks, and what shakes it
     path : file to write
+
+    Raises
+    ------
+    InputError
+        If the simulation in a page does not know what rocks.
     """
     system = as_system(body)
+    _check_known(system, motion)
     samples = _samples(motion)
     name = " on ".join(reversed([_sizes(each) for each in system.bodies]))
     if isinstance(motion, GroundMotion):
@@ -51,10 +62,6 @@ def write_play_page(
         ]
     else:
         amplitudes, peak, rests_on = np.array(AMPLITUDES_G), motion.pga, []
-        if not in_page(system):
-            raise InputError(
-                "--pedestal: a page simulates two bodies on each other at most; rockfrag simulate takes more."
-            )
         live = live_kernel({name: system}, [motion])
     # at every amplitude, and last as recorded
     found = overturns(
@@ -83,6 +90,24 @@ def write_play_page(
         live=live,
     )
     write_text(page.html(), path)
+
+
+def _check_known(system: System, motion: Motion | GroundMotion) -> None:
+    """Refuse what the simulation in a page does not know: it would show another body than the sentences are of."""
+    found = in_page(system)
+    if isinstance(motion, GroundMotion):
+        wanted = wishes(system, motion, Request(history=True))
+        found = Support(wanted - IN_SPACE)
+    if found:
+        return
+    if Wish.MANY_BODIES in found.missing:
+        raise InputError(
+            "--pedestal: a page simulates two bodies on each other at most; rockfrag simulate takes more."
+        )
+    # of a body that stands as no page knows it no wish is missing
+    named = listed([wish.value for wish in Wish if wish in found.missing])
+    known = "a page does not simulate that; leave it out, or use rockfrag simulate."
+    raise InputError(f"body: {found.reason or f'it has {named}'}, and {known}")
 
 
 def _samples(motion: Motion | GroundMotion) -> int:
