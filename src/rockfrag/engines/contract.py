@@ -172,7 +172,16 @@ class Engine(Protocol):
 
 
 def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[Wish]:
-    """Return what is wished for with a system, a motion and a request."""
+    """Return what is wished for with a system, a motion and a request.
+
+    Parameters
+    ----------
+    system, motion, request : of a case
+
+    Returns
+    -------
+    The wishes.
+    """
     start = system.start
     made = {
         Wish.TWO_BODIES: system.count == 2,

@@ -168,12 +168,13 @@ def trials_of(
     trials = sample_trials(thing, study.unknowns, count, study.seed)
     if "held" not in study.object:
         return trials
+    held = study.object["held"]
     # the planar body, a rival of a mesh in space, is held as that is
-    systems, planar = (
-        tuple(held_as_stated(each, study.object["held"]) for each in all_trials)
-        for all_trials in (trials.systems, trials.planar)
+    return replace(
+        trials,
+        systems=tuple(held_as_stated(each, held) for each in trials.systems),
+        planar=tuple(held_as_stated(each, held) for each in trials.planar),
     )
-    return replace(trials, systems=systems, planar=planar)
 
 
 def object_of(study: CampaignStudy) -> Shape | Block:
