@@ -24,7 +24,11 @@ from rockfrag.motions.directions import motions_of_row
 from rockfrag.motions.measures import measure_motion
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.motion import Motion
-from rockfrag.study.configurations import read_configurations, read_specimens
+from rockfrag.study.configurations import (
+    read_configurations,
+    read_specimens,
+    with_contacts,
+)
 from rockfrag.study.holding import read_isolators
 from rockfrag.study.loading import any_study, load_any
 from rockfrag.system.blocks import Block
@@ -331,6 +335,11 @@ def test_arrangements_say_what_holds_the_bodies(tmp_path: Path):
     assert found["niche"].constraints[0].distance == pytest.approx(0.25 + 0.04)
     assert found["kerb"].constraints[0].height == pytest.approx(0.1)
     assert found["kerb"].contacts[0].friction == ROLLING
+    study = {"bodies": {}, "friction": 0.6}
+    rubs = {each.name: each for each in with_contacts(systems, blocks, study, "study")}
+    grounds = {name: system.contacts[0].friction for name, system in rubs.items()}
+    # what rolls goes on rolling
+    assert grounds["kerb"] == ROLLING and grounds["niche"].static == 0.6
     (bond,) = (bond for _, bond in found["wax"].bonds)
     assert (bond.tension, bond.shear, bond.spread[0]) == (120.0, 120.0, 0.15)
     left, right = found["cord"].constraints

@@ -215,10 +215,15 @@ def with_contacts(
             found = tuple(_with_restitution(system, measured, law) for system in found)
     if (friction := content.get("friction")) is not None:
         with errors_of(f"{source}: key friction"):
-            found = tuple(
-                system_of(system, _friction(system, friction)) for system in found
-            )
+            found = tuple(_with_friction(system, friction) for system in found)
     return found
+
+
+def _with_friction(system: System, friction: Any) -> System:
+    """System with the friction of a study; what rolls on free casters goes on rolling."""
+    rolling = system.contacts[0].friction
+    rubs = system_of(system, _friction(system, friction))
+    return rubs if rolling is None else rubs.with_friction(rolling)
 
 
 def _with_restitution(system: System, measured: Mapping[str, Any], law: str) -> System:

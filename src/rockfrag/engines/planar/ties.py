@@ -197,7 +197,7 @@ def note_tensions(p, w):
 
 @kernel
 def _note_tension(p, w, t):
-    """Keep the largest force of tie t in the state ``w.q``, ``w.v``; return the force, positive as it pulls [N]."""
+    """Keep the largest force of tie t in the state ``w.q``, ``w.v``; return the force, positive in tension [N]."""
     force, _ = tension(p, w, w.q, w.v, t)
     at = p.tie_number[t]
     w.outcome.largest_force[at] = max(w.outcome.largest_force[at], abs(force))
