@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
+from rockfrag.system.support import BilinearIsolator
 from rockfrag.system.system import Start, System
 
 if TYPE_CHECKING:
@@ -177,16 +178,28 @@ class Response:
         Raises
         ------
         InputError
-            If a body has fallen, or still moves at the last sample.
+            If a body has fallen, or a body or the plate of an isolator still moves at the last sample; and if a
+            bilinear isolator is not where it was set, since no start says how its spring has yielded.
         """
         system = self.system
         if self.overturned:
             raise InputError(
                 f"system_after: the {self.overturned_body} has fallen; nothing is left to be shaken again."
             )
-        if np.abs(self.omega[-1]).max() > AT_REST:
+        plate = np.zeros(2) if self.plate is None else self.plate[-2:]
+        if isinstance(system.support, BilinearIsolator) and plate.any():
             raise InputError(
-                "system_after: the bodies still move at the end; let quiet time follow the motion."
+                "system_after: the plate of a bilinear isolator swings on, and no start says how its spring has "
+                "yielded; append the records, with quiet time between them."
+            )
+        if (
+            np.abs(self.omega[-1]).max() > AT_REST
+            or self.slides[-1].any()
+            or np.ptp(plate) > 0
+        ):
+            raise InputError(
+                "system_after: the bodies, or what they stand on, still move at the end; let quiet time follow "
+                "the motion, or append the records."
             )
         broken = set()
         if self.constraints is not None:
@@ -203,12 +216,11 @@ class Response:
             constraints=tuple(each for each, name in kept if name not in broken),
             start=None,
         )
-        plate = 0.0 if self.plate is None else float(self.plate[-1])
-        if not (self.slip[-1].any() or self.theta[-1].any() or plate):
+        if not (self.slip[-1].any() or self.theta[-1].any() or plate[-1]):
             return left
         still = (0.0,) * system.count
         places = tuple((x, z) for x, z in self.position[-1].tolist())
-        start = Start(tuple(self.theta[-1].tolist()), still, places, plate)
+        start = Start(tuple(self.theta[-1].tolist()), still, places, float(plate[-1]))
         return replace(left, start=start)
 
     def samples(self) -> dict[str, NDArray[Any]]:

@@ -8,7 +8,16 @@ import pytest
 from rockfrag import Block, Stack, simulate
 from rockfrag.base.errors import InputError
 from rockfrag.simulation.holding import bond_tension_needed
-from rockfrag.system import Bond, Friction, SlidingPendulum, Tie, Wall, as_system, hold
+from rockfrag.system import (
+    BilinearIsolator,
+    Bond,
+    Friction,
+    SlidingPendulum,
+    Tie,
+    Wall,
+    as_system,
+    hold,
+)
 
 from ...simulation.reference_bodies import random_motion
 from .cases import DT, run
@@ -79,6 +88,49 @@ def test_an_isolator_begins_where_it_was_left() -> None:
     assert abs(before.plate[-1]) > 1e-3
     samples = min(len(after.plate), len(whole.plate) - at)
     assert np.array_equal(after.plate[:samples], whole.plate[at : at + samples])
+
+
+def isolated(support):
+    """Response of a block on an isolator to a motion with quiet time after it."""
+    motion = 3 * random_motion(np.random.default_rng(5))[:300]
+    held = hold(as_system(Block(0.6, 1.2, 100.0)), support=support)
+    return simulate(held, np.append(motion, QUIET), DT, friction=0.6)
+
+
+@pytest.mark.parametrize("strength", [0.0, 150.0])
+def test_a_bilinear_isolator_that_has_not_come_back_asks_for_both_records(
+    strength,
+) -> None:
+    springs = BilinearIsolator(mass=50.0, stiffness=2000.0, strength=strength)
+    found = isolated(springs)
+    # within its yield displacement, or without one, it loses nothing
+    assert found.plate is not None
+    assert np.ptp(found.plate[-200:]) > 1e-4
+    with pytest.raises(InputError, match="append the records, with quiet time"):
+        found.system_after()
+
+
+def test_a_bilinear_isolator_that_never_moved_is_as_it_was() -> None:
+    springs = BilinearIsolator(mass=50.0, stiffness=2000.0, strength=150.0)
+    held = hold(as_system(Block(0.6, 1.2, 100.0)), support=springs)
+    found = simulate(held, np.zeros(100), DT, friction=0.6)
+    start = found.system_after().start
+    assert start is None or (start.plate, start.rotation) == (0.0, (0.0,))
+
+
+def test_a_dish_without_friction_never_rests() -> None:
+    found = isolated(SlidingPendulum(mass=50.0, radius=2.0))
+    with pytest.raises(InputError, match="still move at the end"):
+        found.system_after()
+
+
+def test_what_still_slides_is_not_at_rest() -> None:
+    # rolling resistance so small that it rolls beyond the end of the history
+    found = simulate(BLOCK, np.full(30, 3.0), DT, friction=0.005)
+    assert np.abs(found.omega[-1]).max() == 0
+    assert found.slides[-1, 0] != 0
+    with pytest.raises(InputError, match="still move at the end"):
+        found.system_after()
 
 
 def test_what_fell_is_not_shaken_again() -> None:
