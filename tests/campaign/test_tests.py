@@ -304,6 +304,9 @@ def test_the_trials_of_a_held_object_are_held():
     for each in found.systems:
         gap = each.constraints[0].distance - mounts.reach(each, 1)
         assert gap == pytest.approx(0.02)
+    held["putty_spread_m"] = 0.15
+    with pytest.raises(InputError, match=r"^object: held: Bond: spread: the pads lie"):
+        trials_of(Block(0.3, 1.2, 100.0), study, 8)
 
 
 def test_the_planar_rival_of_a_held_mesh_is_held_as_the_mesh_is():

@@ -129,6 +129,9 @@ def test_what_holds_a_body_is_told_with_what_it_had_to_bear(simulated):
     two = ("--pendulum", "2", "0.05", "--springs", "300", "30")
     wrong = simulated(*case, *two, status=2)
     assert wrong.err.startswith("--springs: there is a --pendulum already")
+    wrong = simulated(*case, "--putty", "1500N", "1500N", "40cm", status=2)
+    assert "the pads lie outside the base" in wrong.err
+    assert "give 0.1 m at most" in wrong.err
     wrong = simulated(*case, "--cord", "5kN", status=2)
     assert "expected a stiffness such as 50 kN/m in one of the units N/m" in wrong.err
 

@@ -18,9 +18,15 @@ from rockfrag.system import (
     as_system,
     hold,
 )
+from rockfrag.system.body import Circle, Interval, Polygon
+from rockfrag.system.system import System, cylinder
 
 BLOCK = Block(0.3, 1.2, 100.0)
 STACK = Stack(Block(0.6, 0.4, 300.0), BLOCK)
+DEEP = Block(0.3, 1.2, 100.0, depth=0.2).system()
+ROUND = System(
+    (cylinder(0.3, 1.2, 100.0, None, (0.0, 0.0, 0.6)),), as_system(BLOCK).contacts
+)
 CORD = Tie((0.0, 0.0, 1.2), (0.5, 0.0, 1.2), 1e4)
 
 
@@ -47,6 +53,22 @@ def test_what_holds_a_system_is_named_in_one_order():
         (lambda: Tie((0, 0, 1), (1, 0, 1), 0.0), "Tie: stiffness: expected a positive"),
         (lambda: Bond(-1.0, 0.0, 0.1), "Bond: tension: expected a number of newtons"),
         (lambda: Bond(1.0, 0.0, (0.1,)), r"Bond: spread: expected \(x, y\)"),
+        (
+            lambda: hold(as_system(BLOCK), bonds=Bond(1.0, 1.0, 0.151)),
+            "Bond: spread: the pads lie outside the base .* give 0.15 m at most",
+        ),
+        (
+            lambda: hold(as_system(STACK), bonds=[Bond(1.0, 1.0, 5.0), None]),
+            "give 0.3 m at most",
+        ),
+        (
+            lambda: hold(DEEP, bonds=Bond(1.0, 1.0, (0.15, 0.15))),
+            r"at ± \(0.15, 0.15\) m; \(0.1, 0.1\) m would be at its edge",
+        ),
+        (
+            lambda: hold(ROUND, bonds=Bond(1.0, 1.0, 0.15)),
+            r"\(0.106066, 0.106066\) m would be at its edge",
+        ),
         (
             lambda: SlidingPendulum(mass=0.0),
             "SlidingPendulum: mass: expected a positive",
@@ -76,6 +98,31 @@ def test_what_holds_a_system_is_named_in_one_order():
 def test_what_cannot_hold_is_refused_in_one_sentence(make, says):
     with pytest.raises(InputError, match=says):
         make()
+
+
+SQUARE = ((-0.3, -0.2), (0.3, -0.2), (0.3, 0.2), (-0.3, 0.2))
+
+
+@pytest.mark.parametrize(
+    ("base", "room"),
+    [
+        (Interval(-0.1, 0.3), 2.0),  # around its middle
+        (Polygon(SQUARE), 1.0),
+        # around the origin
+        (Polygon(tuple((x + 0.25, y) for x, y in SQUARE)), 0.5),
+        # |x| + |y| ≤ 0.6
+        (Polygon(((0.6, 0.0), (0.0, 0.6), (-0.6, 0.0), (0.0, -0.6))), 2.0),
+        (Circle(math.sqrt(0.05)), 1.0),
+        # (0.1 s + 0.15)² + (0.2 s)² = 0.25²: of the pad on the far side
+        (Circle(0.25, (0.15, 0.0)), (math.sqrt(0.0089) - 0.03) / 0.1),
+        (Circle(0.1, (0.15, 0.0)), 0.0),
+    ],
+)
+def test_pads_have_room_up_to_the_edge_of_a_base(base, room):
+    bond = Bond(1.0, 1.0, (0.1, 0.2))
+    assert bond.room_under(base) == pytest.approx(room)
+    part = min(room, 1.0) or 1.0  # where none lies inside none is shifted
+    assert bond.kept_under(base).pads == pytest.approx((part * 0.1, part * 0.2))
 
 
 def test_a_layer_breaks_where_its_edge_reaches_its_strength():

@@ -8,7 +8,7 @@ import pytest
 from rockfrag import Block, Column, InputError, Stack
 from rockfrag.system import System, as_system, hold, mounts
 from rockfrag.system.body import Circle, Polygon, interval_of
-from rockfrag.system.system import standing_points
+from rockfrag.system.system import cylinder, standing_points
 
 BLOCK = Block(0.3, 1.2, 100.0)
 STANDING = {
@@ -101,6 +101,16 @@ def test_putty_of_a_body_in_space_lies_under_its_base_both_ways():
                 along = math.cos(angle), math.sin(angle)
                 end = interval_of(base, along).right
                 assert x * along[0] + y * along[1] <= end + 1e-12
+
+
+def test_putty_in_space_lies_at_the_corners_or_on_the_rim():
+    deep = Block(0.6, 1.2, 100.0, depth=0.2).system()
+    assert mounts.putty_under(deep, 80.0).pads == pytest.approx((0.3, 0.1))
+    round_one = cylinder(0.6, 1.2, 100.0, None, (0.0, 0.0, 0.6))
+    system = System((round_one,), deep.contacts)
+    pads = mounts.putty_under(system, 80.0).pads
+    assert math.hypot(*pads) == pytest.approx(0.3)
+    assert hold(system, bonds=mounts.putty_under(system, 80.0)).holding == ("bond 1",)
 
 
 def test_a_bracket_reaches_to_the_wall_that_is_near_and_is_short_where_none_is():

@@ -353,6 +353,9 @@ def test_arrangements_say_what_holds_the_bodies(tmp_path: Path):
     )
     assert (springs.stiffness, springs.strength) == (3000.0, 50.0)
     assert found["isolated"].names == ("plinth", "venus")
+    table.write_text("name,object,putty_n,putty_spread_m\nA,venus,120,5\n")
+    with pytest.raises(InputError, match=r"line 2: Bond: spread: .* give 0\.15 m at"):
+        read_configurations(table, blocks, isolators)
     table.write_text("name,object\nA,venus | cellar\n")
     with pytest.raises(InputError, match="venus, plinth, isolator, springs, found cel"):
         read_configurations(table, blocks, isolators)

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.base.arrays import Flags
-from rockfrag.base.errors import InputError
+from rockfrag.base.errors import InputError, errors_of
 from rockfrag.base.units import GRAVITY
 from rockfrag.campaign import comparison, laboratory
 from rockfrag.campaign.comparison import HALF, NEAR_CRITICAL, MeasuredTests
@@ -170,11 +170,10 @@ def trials_of(
         return trials
     held = study.object["held"]
     # the planar body, a rival of a mesh in space, is held as that is
-    return replace(
-        trials,
-        systems=tuple(held_as_stated(each, held) for each in trials.systems),
-        planar=tuple(held_as_stated(each, held) for each in trials.planar),
-    )
+    with errors_of("object: held"):
+        systems = tuple(held_as_stated(each, held) for each in trials.systems)
+        planar = tuple(held_as_stated(each, held) for each in trials.planar)
+    return replace(trials, systems=systems, planar=planar)
 
 
 def object_of(study: CampaignStudy) -> Shape | Block:

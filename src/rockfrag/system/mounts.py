@@ -168,7 +168,8 @@ def pads_under(base: Outline, part: float) -> tuple[float, float]:
         half = part * (base.right - base.left) / 2
         return half, half
     if isinstance(base, Circle):
-        return footprint.pads_in_circle(base.radius, part)
+        # all four lie on it, whichever side its centre is on
+        return footprint.pads_in_circle(base.radius - math.hypot(*base.centre), part)
     return footprint.pads_in_polygon(base.vertices, len(base.vertices), part)
 
 

@@ -92,6 +92,8 @@ class System:
         object.__setattr__(self, "constraints", tuple(self.constraints))
         for constraint in self.constraints:
             _check_constraint(constraint, self)
+        for k, bond in self.bonds:
+            _check_bond(bond, self.bodies[k])
         if not (self.support is None or isinstance(self.support, Support)):
             raise InputError(
                 f"System: support: expected an isolator, got {shown(self.support)}."
@@ -248,6 +250,20 @@ def _check_constraint(constraint: object, system: System) -> None:
         raise InputError(
             f"Wall: at {constraint.distance:g} m it stands where the bodies are; they reach to {reach:.6g} m."
         )
+
+
+def _check_bond(bond: Bond, body: RigidBody) -> None:
+    """Refuse a bond whose pads lie outside the base of the body that stands on it."""
+    room, (x, y) = bond.room_under(body.base), bond.pads
+    if room >= 1 - 1e-9:
+        return
+    if body.planar:
+        said = f"{x:g} m to both sides of its middle; give {room * x:.6g} m at most"
+    else:
+        said = f"at ± ({x:g}, {y:g}) m; ({room * x:.6g}, {room * y:.6g}) m would be at its edge"
+    raise InputError(
+        f"Bond: spread: the pads lie outside the base that stands on them, {said}."
+    )
 
 
 def hold(
