@@ -90,6 +90,23 @@ def test_an_isolator_begins_where_it_was_left() -> None:
     assert np.array_equal(after.plate[:samples], whole.plate[at : at + samples])
 
 
+def test_what_leans_at_its_wall_begins_there() -> None:
+    tall = Block(0.3, 1.2, 100.0)
+    held = hold(as_system(tall), Wall(0.15 + 1.2 * math.sin(0.3) + 1e-3))
+    first = np.zeros(1000)
+    before = simulate(held, first, DT, theta0=0.3, friction=0.6)
+    assert before.theta[-1, 0] > math.atan(0.25)
+    second = 0.5 * random_motion(np.random.default_rng(6))[:300]
+    after = simulate(before.system_after(), second, DT)
+    both = np.concatenate([first, QUIET, second])
+    whole = simulate(held, both, DT, theta0=0.3, friction=0.6)
+    at, samples = first.size + QUIET.size, second.size
+    assert np.ptp(after.theta) > 1e-3
+    # what leans keeps a rate of 1e-34 rad/s, from which a start is free
+    found, expected = after.theta[:samples], whole.theta[at : at + samples]
+    assert found == pytest.approx(expected, abs=1e-12)
+
+
 def isolated(support):
     """Response of a block on an isolator to a motion with quiet time after it."""
     motion = 3 * random_motion(np.random.default_rng(5))[:300]

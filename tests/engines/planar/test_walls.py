@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rockfrag import Block, Column, Motion, Stack, overturns
+from rockfrag import Block, Column, Motion, Stack, overturns, simulate
+from rockfrag.base.errors import InputError
 from rockfrag.engines.contract import Case, Request
 from rockfrag.engines.planar.engine import ContactRun
 from rockfrag.engines.planar.integrate import IMPACT
@@ -15,7 +16,7 @@ from rockfrag.simulation.options import system_of
 from rockfrag.system import SlidingPendulum, Wall, as_system, hold
 from rockfrag.system.body import Interval
 from rockfrag.system.mounts import ROLLING, on_casters
-from rockfrag.system.system import corners, standing_centres
+from rockfrag.system.system import Start, corners, standing_centres
 
 from ...oracle import witness
 from ...oracle.cones import Touch, planar_rays, unexplained
@@ -418,3 +419,48 @@ def test_between_rough_walls_time_goes_on(number: int) -> None:
     assert found.forced == 0
     assert np.isfinite(found.theta).all()
     assert found.energy["residual"].abs().max() < 1e-6 * found.energy["potential"][0]
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(
+    ("height", "inside"),
+    [
+        (math.inf, 0.4 / 2 + 1.2 * math.sin(0.15) - 0.25),  # its upper corner
+        # its side passes the edge of the wall
+        (0.6, 0.4 / 2 + 0.6 * math.tan(0.15) - 0.25),
+        (0.3, None),
+    ],
+)
+def test_a_start_inside_a_wall_is_refused(side, height, inside):
+    block, direction = as_system(Block(0.4, 1.2, 100.0)), 0.0 if side > 0 else math.pi
+    held = hold(block, Wall(0.25, direction, height=height))
+    motion = np.zeros(20)
+
+    def doors(angle):
+        start = replace(held, start=Start((angle,), (0.0,)))
+        yield lambda: simulate(held, motion, DT, theta0=angle, friction=0.5)
+        yield lambda: overturns(held, motion, DT, theta0=[angle], friction=0.5)
+        yield lambda: simulate(start, motion, DT, friction=0.5)
+
+    for give in doors(0.15 * side):
+        if inside is None:
+            give()
+            continue
+        says = f"Start: the block begins {inside:.3g} m inside wall 1; turn it less"
+        with pytest.raises(InputError, match=says):
+            give()
+    for give in (*doors(0.04 * side), *doors(-0.15 * side)):
+        give()
+
+
+def test_a_plate_that_starts_beyond_its_stop_is_refused():
+    dish = SlidingPendulum(mass=50.0, radius=2.0, friction=0.1, stroke=0.1)
+    held = hold(as_system(BLOCK), support=dish)
+    for plate, is_refused in ((0.1, False), (0.11, True), (-0.11, True)):
+        centre = ((plate, BLOCK.height / 2),)
+        system = replace(held, start=Start((0.0,), (0.0,), centre, plate))
+        if not is_refused:
+            simulate(system, np.zeros(20), DT, friction=0.5)
+            continue
+        with pytest.raises(InputError, match=r"the plate begins 0\.01 m beyond the"):
+            simulate(system, np.zeros(20), DT, friction=0.5)

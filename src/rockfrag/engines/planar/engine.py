@@ -20,7 +20,7 @@ from rockfrag.engines.built_in import PLANAR, PlanarEngine
 from rockfrag.engines.contract import Case, Cases, Engine, Request, engines, run_cases
 from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar import records
-from rockfrag.engines.planar.holding import THIN, with_plate
+from rockfrag.engines.planar.holding import THIN, check_start, with_plate
 from rockfrag.engines.pure_rocking.histories import shaking_of
 from rockfrag.engines.pure_rocking.kernels.single import GRAZING_SPEED
 from rockfrag.engines.steps import free_samples, step_count
@@ -283,6 +283,11 @@ def described(system: System, g: float) -> tuple[np.void, Array]:
     Returns
     -------
     The record, and coordinates and velocities, shape (2, 3 MOST).
+
+    Raises
+    ------
+    InputError
+        If the start is inside a wall, or beyond a stop.
     """
     body, start = records.system_record(system, g), with_plate(system).start
     zeros = (0.0,) * int(body["count"])
@@ -291,6 +296,8 @@ def described(system: System, g: float) -> tuple[np.void, Array]:
     if start is not None and start.position is not None:
         for k, at in enumerate(start.position):
             placed[0, 3 * k : 3 * k + 2] = at
+    if start is not None:
+        check_start(body, placed, system)
     return body, placed
 
 

@@ -6,9 +6,11 @@ In: a :class:`rockfrag.system.system.System` with constraints. Out: the fields o
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockfrag.base.arrays import with_attributes
 from rockfrag.base.errors import InputError
@@ -16,6 +18,7 @@ from rockfrag.engines.planar import _describe
 from rockfrag.system.body import Interval, RigidBody
 from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.contact import Contact, Friction
+from rockfrag.system.geometry import turned
 from rockfrag.system.support import BilinearIsolator, SlidingPendulum
 from rockfrag.system.system import (
     MOST_BODIES,
@@ -26,10 +29,12 @@ from rockfrag.system.system import (
     standing_points,
 )
 
+Place = tuple[float, float]
 SMOOTH = Friction(0.0, 0.0)
 ALL = 24  # contacts of a record, as in ``records``
 MOST_CONSTRAINTS = 16
 PLATE = 100.0  # width of the plate of an isolator, wide enough [m] ...
+INSIDE = 1e-9  # by which a corner may be inside a wall for rounding [m]
 THIN = 2.0**-20  # ... and its height, too small to matter [m]
 
 
@@ -153,6 +158,59 @@ def _fill_support(p: np.void, system: System) -> None:
         p["is_stop"][k], p["wall_top"][k] = 1, math.inf
         p["bounce"][k] = support.restitution
         p["wall_x"][k] = float(p["standing"][0]) + side * support.stroke
+
+
+def check_start(p: np.void, placed: NDArray[np.float64], system: System) -> None:
+    """Refuse bodies that begin inside a wall, and a plate that begins beyond its stop.
+
+    Parameters
+    ----------
+    p : record ``BODY`` of the system
+    placed : coordinates and velocities that it begins with, shape (2, 3 MOST)
+    system : planar
+    """
+    for k in range(int(p["count"]), int(p["contacts"])):
+        body, side, at = int(p["upper"][k]), int(p["side"][k]), float(p["wall_x"][k])
+        x, z, theta = placed[0, 3 * body : 3 * body + 3].tolist()
+        low, high = (_turned(x, z, theta, edge) for edge in p["edge"][k].tolist())
+        inside = _beyond(side * at, float(p["wall_top"][k]), side, (low, high))
+        if inside <= INSIDE:
+            continue
+        if p["is_stop"][k]:
+            raise InputError(
+                f"Start: the plate begins {inside:.3g} m beyond the stop of its isolator; let it begin within the "
+                f"stroke of {system.support.stroke:g} m."
+            )
+        # the lowest body of an isolated system is the plate
+        name = system.names[body - (int(p["count"]) - system.count)]
+        number = int(p["wall"][k]) + 1
+        raise InputError(
+            f"Start: the {name} begins {inside:.3g} m inside wall {number}; turn it less, or move the wall away."
+        )
+
+
+def _turned(
+    x: float, z: float, theta: float, corner: Sequence[float]
+) -> tuple[float, float]:
+    """Where a corner of a body lies (x, z) [m] whose centre is there, turned clockwise [rad]."""
+    across, up = turned(corner[0], corner[1], theta)
+    return x + across, z + up
+
+
+def _beyond(at: float, top: float, side: int, ends: tuple[Place, Place]) -> float:
+    """How far the side of a body between two corners reaches into a wall [m].
+
+    ``at``: of the wall to its ``side``; ``top``: of it, over which a corner may be.
+    """
+    (x0, z0), (x1, z1) = ends
+    # a corner that lies on top of it is not inside
+    below = [z < top - INSIDE for _, z in ends]
+    reach = [side * x - at for (x, _), low in zip(ends, below, strict=True) if low]
+    if any(below) and not all(below):
+        # where the side passes the height of the edge of a low wall
+        part = (top - z0) / (z1 - z0)
+        reach.append(side * (x0 + part * (x1 - x0)) - at)
+    return max(reach, default=-math.inf)
 
 
 def _fill_ties(p: np.void, system: System, shift: int) -> None:
