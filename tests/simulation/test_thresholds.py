@@ -6,12 +6,17 @@ import numpy as np
 import pytest
 
 from rockfrag.simulation.ensemble import overturns
-from rockfrag.simulation.robustness import find_step_size_sensitive, outcome_robustness
+from rockfrag.simulation.robustness import (
+    find_step_size_sensitive,
+    outcome_robustness,
+    perturbed,
+)
 from rockfrag.simulation.thresholds import find_thresholds
+from rockfrag.system import Bond, Wall, as_system, hold
 from rockfrag.system.blocks import Block, Stack
 
 from ..oracle import cases as benchmark_cases
-from .reference_bodies import T1, P, polyline, uniform
+from .reference_bodies import T1, P, polyline, random_motion, uniform
 
 DT = 0.01
 
@@ -154,6 +159,33 @@ def test_what_is_sure_does_not_flip_and_what_is_not_does():
     flips = 1 - other
     assert (sure < 1).sum() > 20
     assert flips[sure == 1].mean() < 0.02 < 0.1 < flips[sure < 0.8].mean()
+
+
+def test_copies_of_what_is_held_keep_their_gap_and_their_pads():
+    """Also of what touches its wall, or has its pads at the ends of its base."""
+    block = Block(0.3, 1.2, 100.0)
+    motion = 2.0 * random_motion(np.random.default_rng(5))
+    for held in (
+        hold(as_system(block), Wall(0.15)),
+        hold(as_system(block), Wall(0.17, height=0.4)),
+        hold(as_system(block), bonds=Bond(500.0, 500.0, 0.15)),
+    ):
+        same = outcome_robustness(
+            held, motion, 0.01, perturbation=0.01, copies=4, friction=0.6
+        )
+        assert 0 <= same[0, 0, 0] <= 1
+        rng = np.random.default_rng(1)
+        for _ in range(4):
+            near = perturbed(held, 0.01, rng)
+            width = near.bodies[0].width
+            assert width != 0.3
+            assert near.holding == held.holding
+            for wall, given in zip(near.constraints, held.constraints, strict=True):
+                gap = given.distance - 0.15
+                assert wall.distance - width / 2 == pytest.approx(gap, abs=1e-12)
+                assert wall.height == given.height
+            for _, bond in near.bonds:
+                assert bond.pads[0] == pytest.approx(min(0.15, width / 2))
 
 
 def test_a_smaller_perturbation_leaves_more_outcomes_as_they_are():

@@ -35,7 +35,7 @@ from rockfrag.system.body import (
     checked_tensor,
 )
 from rockfrag.system.geometry import shape_of
-from rockfrag.system.system import System
+from rockfrag.system.system import System, with_bodies
 
 LARGEST_PERTURBATION = 0.1  # beyond this a copy is another experiment
 
@@ -56,6 +56,9 @@ def outcome_robustness(
 
     Each copy has a motion, and widths and heights of its blocks, that are larger or smaller by at most
     ``perturbation``, drawn evenly and independently; one draw serves all cases of a copy.
+
+    Walls move with the faces beside them, so that gaps stay: a gap is measured by itself, and is not narrower
+    where a block is wider.  Pads of a bond stay where they are, or at the edge of a narrower base.
 
     Parameters
     ----------
@@ -113,7 +116,7 @@ def perturbed(system: System, size: float, rng: np.random.Generator) -> System:
     for body in system.bodies:
         across, up = (1 + size * rng.uniform(-1, 1, 2)).tolist()
         bodies.append(_resized(body, across, up))
-    return replace(system, bodies=tuple(bodies))
+    return with_bodies(system, bodies)
 
 
 def _resized(body: RigidBody, across: float, up: float) -> RigidBody:

@@ -13,7 +13,7 @@ from rockfrag.base.elementary import sin_cos
 from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import shown
 from rockfrag.system import geometry
-from rockfrag.system.body import Circle, Polygon, RigidBody, Vector3
+from rockfrag.system.body import Circle, Polygon, RigidBody, Vector3, interval_of
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Constraint, Tie, Wall
 from rockfrag.system.contact import Contact, Friction
@@ -243,9 +243,7 @@ def _check_constraint(constraint: object, system: System) -> None:
         raise InputError(
             "Wall: a wall beside planar bodies stands to the right or the left; give the direction 0 or π."
         )
-    reach = max(
-        constraint.side * x for x, z in corners(system) if z < constraint.height
-    )
+    reach = reach_at(system, constraint)
     if constraint.distance < reach - 1e-9:
         raise InputError(
             f"Wall: at {constraint.distance:g} m it stands where the bodies are; they reach to {reach:.6g} m."
@@ -263,6 +261,67 @@ def _check_bond(bond: Bond, body: RigidBody) -> None:
         said = f"at ± ({x:g}, {y:g}) m; ({room * x:.6g}, {room * y:.6g}) m would be at its edge"
     raise InputError(
         f"Bond: spread: the pads lie outside the base that stands on them, {said}."
+    )
+
+
+def reach_at(system: System, wall: Wall, turned: float = 0.0) -> float:
+    """How far bodies as they stand reach towards a wall, below its upper edge [m].
+
+    Parameters
+    ----------
+    system, wall : the bodies, and a wall beside them
+    turned : of one body in space, about the vertical through its centre of mass, from x towards y [rad]
+
+    Returns
+    -------
+    The distance from the origin of the lowest base, along the direction of the wall [m].
+    """
+    if system.planar:
+        return max(wall.side * x for x, z in corners(system) if z < wall.height)
+    body = system.bodies[0]
+    # the body turned one way is the wall turned the other way
+    sine, cosine = sin_cos(wall.direction - turned)
+    along = body.centre[0] * cosine + body.centre[1] * sine
+    outlines = (body.base, body.face or body.base)
+    furthest = max(interval_of(each, (cosine, sine)).right for each in outlines)
+    sine, cosine = sin_cos(wall.direction)
+    return furthest - along + body.centre[0] * cosine + body.centre[1] * sine
+
+
+def with_bodies(
+    system: System, bodies: Sequence[RigidBody], turned: float = 0.0
+) -> System:
+    """Return the system with bodies of slightly other sizes, and what holds them where they are.
+
+    Walls keep their distance from the bodies, and pads of bonds stay under the bases.
+
+    Parameters
+    ----------
+    system, bodies : the system, and a body for each of its own
+    turned : by which one body in space is turned about the vertical [rad]; its walls keep their distance or more
+
+    Returns
+    -------
+    The system.
+    """
+    free = replace(system.free(), bodies=tuple(bodies))
+    contacts = tuple(
+        replace(contact, bond=contact.bond and contact.bond.kept_under(body.base))
+        for contact, body in zip(system.contacts, bodies, strict=True)
+    )
+
+    def beside(constraint: Constraint) -> Constraint:
+        if isinstance(constraint, Tie) or constraint.distance == math.inf:
+            return constraint
+        gap = max(0.0, constraint.distance - reach_at(system, constraint))
+        reach = max(reach_at(free, constraint, turn) for turn in (0.0, turned))
+        return replace(constraint, distance=reach + gap)
+
+    return replace(
+        free,
+        contacts=contacts,
+        constraints=tuple(map(beside, system.constraints)),
+        support=system.support,
     )
 
 

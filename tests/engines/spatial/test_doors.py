@@ -1,5 +1,7 @@
 """What a user asks of the engine in space."""
 
+import math
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -15,7 +17,7 @@ from rockfrag.engines.spatial.engine import ENGINE, run_case
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.live_space import AMPLITUDES_G
 from rockfrag.simulation.parquet import stream_histories, stream_overturns
-from rockfrag.system import Block, Contact, Stack, System, as_system
+from rockfrag.system import Block, Bond, Contact, Stack, System, Wall, as_system, hold
 from rockfrag.system.system import box, cylinder
 from rockfrag.words.sentences import number
 
@@ -113,6 +115,27 @@ def test_a_spread_moves_vertices_and_turns_the_body_by_no_more_than_it_says():
     expected, _ = run_case(body, motion.accelerations, DT, start=start)
     assert found.turn[0, 0, 0, 0] == expected.turn
     assert found.turn[0, 0, 0, 0] != overturns([BOX], [motion]).turn[0, 0, 0, 0]
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.5 * math.pi, 0.7])
+def test_a_spread_leaves_the_gap_to_a_wall_and_pads_under_the_base(direction):
+    """Also of a body at its wall: it begins as far from it as it stood, moved and turned, or further."""
+    half = 0.35 / 2
+    reach = half * (abs(math.cos(direction)) + abs(math.sin(direction)))
+    held = hold(BOX, Wall(reach, direction), bonds=Bond(300.0, 300.0, half))
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        near, turned = bodies.perturbed(held, 0.01, rng)
+        vertices = np.array(
+            [*near.bodies[0].base.vertices, *BOX.bodies[0].face.vertices]
+        )
+        towards = np.array([math.cos(direction - turned), math.sin(direction - turned)])
+        (wall,) = near.constraints
+        assert wall.distance >= (vertices @ towards).max() - 1e-12
+        assert wall.distance <= reach + 0.01 * 0.35 * 4
+        kernel_body(near)
+    found = overturns(held, ground_motion(1, 0.4), spread=0.01)
+    assert found.overturned.shape == (1, 1, 1)
 
 
 def test_a_history_has_the_spread_that_its_request_asks_for():

@@ -177,6 +177,7 @@ def check_start(p: np.void, placed: NDArray[np.float64], system: System) -> None
         if inside <= INSIDE:
             continue
         if p["is_stop"][k]:
+            assert system.support is not None
             raise InputError(
                 f"Start: the plate begins {inside:.3g} m beyond the stop of its isolator; let it begin within the "
                 f"stroke of {system.support.stroke:g} m."

@@ -28,7 +28,7 @@ from rockfrag.engines.spatial._describe import fill_body, fill_wall
 from rockfrag.system.body import Circle, Polygon, RigidBody
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Tie, Wall
-from rockfrag.system.system import System
+from rockfrag.system.system import System, with_bodies
 
 # size of the perturbation that tells how robust an outcome is: of vertices over the width of the base, of the
 # direction in radians [-].  Two vertices that land at once and two that land one after the other go on
@@ -205,6 +205,8 @@ def perturbed(
 ) -> tuple[System, float]:
     """Return a body with an imperfect base, and a turn about the vertical: both drawn evenly.
 
+    Walls stay as far from it as they stood, or further where it turns towards them.
+
     Parameters
     ----------
     system : of one body
@@ -228,4 +230,4 @@ def perturbed(
         moved = vertices + width * rng.uniform(-spread, spread, vertices.shape)
         base = Polygon(tuple((float(x), float(y)) for x, y in moved))
     turned = float(rng.uniform(-spread, spread))
-    return replace(system, bodies=(replace(body, base=base),)), turned
+    return with_bodies(system, [replace(body, base=base)], turned), turned
