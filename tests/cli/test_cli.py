@@ -146,6 +146,15 @@ def test_what_leans_at_the_end_is_told(tmp_path, capsys):
     assert told in capsys.readouterr().out
 
 
+def test_what_holds_a_body_in_space_is_simulated_in_python(simulated, record):
+    case = ("--body", "0.2", "0.8", "60", "--depth", "0.2", "--second", str(record))
+    for option, (numbers, _) in HELD.items():
+        wrong = simulated(*case, option, *numbers, status=2)
+        assert wrong.err.startswith("--second: the command simulates what holds")
+        assert "use rockfrag.overturns in Python" in wrong.err
+        assert wrong.err.count("\n") == 1
+
+
 def test_a_column_is_given_from_above(simulated, record, capsys):
     body = (*STATUE, "--pedestal", "0.2", "0.1", "9", "--pedestal", "0.3", "0.1", "20")
     slides = ("--pga", "0.6", "--friction", "0.6", "0.5", "0.4", "--restitution", "0.9")

@@ -213,7 +213,8 @@ def _in_space(
 
     if is_held(options):
         raise InputError(
-            "--second: what holds a body is told of one in its plane here; leave it out."
+            "--second: the command simulates what holds a body in its plane only; leave it out, or use "
+            "rockfrag.overturns in Python, which has walls, cords, brackets, wax and casters in space."
         )
     block, components = _case_in_space(options, body, motion, options.vertical)
     scaled = [scale(component, factor) for component in components]
