@@ -172,8 +172,8 @@ def check_start(p: np.void, placed: NDArray[np.float64], system: System) -> None
     for k in range(int(p["count"]), int(p["contacts"])):
         body, side, at = int(p["upper"][k]), int(p["side"][k]), float(p["wall_x"][k])
         x, z, theta = placed[0, 3 * body : 3 * body + 3].tolist()
-        low, high = (_turned(x, z, theta, edge) for edge in p["edge"][k].tolist())
-        inside = _beyond(side * at, float(p["wall_top"][k]), side, (low, high))
+        ends = [_turned(x, z, theta, edge) for edge in p["edge"][k].tolist()]
+        inside = _beyond(side * at, float(p["wall_top"][k]), side, ends)
         if inside <= INSIDE:
             continue
         if p["is_stop"][k]:
@@ -198,7 +198,7 @@ def _turned(
     return x + across, z + up
 
 
-def _beyond(at: float, top: float, side: int, ends: tuple[Place, Place]) -> float:
+def _beyond(at: float, top: float, side: int, ends: Sequence[Place]) -> float:
     """How far the side of a body between two corners reaches into a wall [m].
 
     ``at``: of the wall to its ``side``; ``top``: of it, over which a corner may be.
