@@ -493,6 +493,10 @@ def test_a_bond_is_noted_with_half_of_what_it_holds_at_most():
     assert s.force[solid.BOND] == pytest.approx(max(first, 0.0))
     holders.note_bond(body, y, DT, s)
     assert s.force[solid.BOND] == pytest.approx(min(0.5 * (-G + 18.0), 4.5))
+    # a side that bears more has parted
+    s.field[3] *= 2
+    holders.note_bond(body, y, DT, s)
+    assert s.force[solid.BOND] == 4.5
 
 
 @pytest.mark.parametrize("closed", [(2,), (2, 3), "rim"])
@@ -1159,6 +1163,8 @@ def test_a_body_slides_on_its_face_while_the_centre_of_pressure_is_inside():
         gravity = (0.0, 0.0, -G)
         load = rest.load_at_rest(body, y, rotation(y), gravity, s)
         stays = face.carried_flat(body, 0.0, y, rotation(y), load, s)
+        for direction in s.direction[:4]:
+            assert direction == pytest.approx(y[7:9])
         assert face.pressure_centre(body, s) == pytest.approx(ahead, abs=1e-9)
         along = np.roll(CORNERS, -1, axis=0) - CORNERS
         beside = ahead - CORNERS
@@ -1170,6 +1176,19 @@ def test_a_body_slides_on_its_face_while_the_centre_of_pressure_is_inside():
             assert (s.count, s.rests) == (4, 0)
             assert (s.slides[:4] == forces.SLIDES).all()
     assert kept == {True, False}
+
+
+def test_a_round_body_slides_on_its_face_while_friction_cannot_tip_it_over_the_rim():
+    """The line of thrust meets the base within the rim whichever way it slides: µ h and the offset are below R."""
+    for off in ((0.05, -0.03), (0.06, 0.0), (0.0, 0.06)):
+        body, s = drum(off), case()
+        y = upright(body)
+        y[7] = 1.0
+        load = rest.load_at_rest(body, y, rotation(y), (0.0, 0.0, -G), s)
+        for part in (0.99, 1.01):
+            body.kinetic = (part * body.rim - math.hypot(*off)) / body.height
+            stays = face.carried_flat(body, 0.0, y, rotation(y), load, s)
+            assert stays == (part < 1)
 
 
 @pytest.mark.parametrize("at_rest", [0, 40])

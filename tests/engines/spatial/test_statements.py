@@ -127,6 +127,11 @@ def test_of_six_points_that_touch_the_four_that_approach_fastest_are_looked_at()
         assert points.count_touching(body, y, rows) == 6
         y[2] += 1e-3
         assert points.touching(body, y, rows, s) == 0
+        # of those that are as fast as each other the first
+        n = 0
+        for i in range(6):
+            n = points.keep_fastest(i, -1.0, n, s)
+        assert (n, s.which.tolist()) == (4, [0, 1, 2, 3])
 
 
 def test_slips_before_an_impact_have_their_direction():

@@ -464,6 +464,16 @@ def test_of_outcomes_of_one_size_the_one_with_the_least_energy_is_taken():
     assert several > 0
 
 
+def test_directions_in_which_slips_are_looked_for_go_once_round():
+    rays = cones.RAYS @ (1, 1j)
+    assert abs(rays) == pytest.approx(1.0)
+    turns = np.angle(np.roll(rays, -1) / rays)
+    assert turns.min() > 0
+    assert turns.sum() == pytest.approx(2 * math.pi)
+    # a square of eight parts a side
+    assert turns.max() == pytest.approx(math.atan(1 / 4))
+
+
 def test_static_friction_holds_what_has_not_slipped_and_kinetic_brakes_what_has():
     """One contact, between both coefficients (Routh): a shear along the old slip is static, against it kinetic."""
     rng, seen = np.random.default_rng(6), set()
