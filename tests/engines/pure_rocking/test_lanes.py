@@ -196,6 +196,14 @@ def hop_of(rng, c, contact, speed):
     return hop, theta, omega
 
 
+def closing(model, state, contact, theta, omega, pulls):
+    """Acceleration that closes a contact, by the plain model [rad per sample²]."""
+    # rates by the second, as the model counts
+    alpha = model.accelerations(state, theta, omega / H, pulls)
+    relative = -alpha[0] if contact == 0 else -(alpha[1] - alpha[0])
+    return state[contact] * relative * H**2
+
+
 @pytest.mark.parametrize("upward", [0.0, 0.02])
 @pytest.mark.parametrize("contact", [0, 1])
 def test_hops_of_a_geometric_series_are_closed_if_it_ends_in_time(contact, upward):
@@ -209,12 +217,8 @@ def test_hops_of_a_geometric_series_are_closed_if_it_ends_in_time(contact, upwar
             weight, ground = 1.0 + upward, rng.normal(0, 0.5)
             opens, parts = [], []
             for state in (c, old):
-                # rates by the second, as the model counts
-                alpha = model.accelerations(
-                    state, theta, omega / H, (ground, weight * G)
-                )
-                relative = -alpha[0] if contact == 0 else -(alpha[1] - alpha[0])
-                opens.append(state[contact] * relative * H**2)
+                pulls = (ground, weight * G)
+                opens.append(closing(model, state, contact, theta, omega, pulls))
                 mass, _ = model.terms(pivots(state), theta, 0 * omega, (0.0, G))
                 # inertia of the relative turn while the other momentum stays
                 if contact == 0:
@@ -245,6 +249,27 @@ def test_hops_of_a_geometric_series_are_closed_if_it_ends_in_time(contact, upwar
             # of what loses hardly anything in two impacts no end is foreseen
             old_speed = 1e-5 * H * math.sqrt(parts[0] / parts[1] / 0.99)
             assert not closes(1e9, hop=hop._replace(old=-old_speed))
+            # a ground that changes at a steady rate: what the least of both give is within twice the time
+            if 2 * lasts < 0.5:
+                told.add("changes")
+                pulls = (ground + 1.0, weight * G)
+                per = [
+                    closing(model, state, contact, theta, omega, pulls) - now
+                    for state, now in zip((c, old), opens, strict=True)
+                ]
+                # what takes all of the first one away by then
+                whole = -opens[0] / per[0] / (2 * lasts)
+                for part in (0.1, 0.4, 0.6, 0.8, 0.95):
+                    rate = part * whole
+                    samples[3:] = ground + rate * (np.arange(57) - 0.4)
+                    least = [
+                        min(now, now + by * rate * 2 * lasts)
+                        for now, by in zip(opens, per, strict=True)
+                    ]
+                    more = 3 * 1e-5 * H / (1 - left)
+                    more *= 1 / least[0] + left / e / least[1]
+                    assert closes(1e9) == (min(least) > 0 and more < 2 * lasts)
+                samples[:] = ground
             # the ground that pulls it open comes within the time, twice over
             samples[4:] = 1e4
             later = closes(1e9)
@@ -259,7 +284,7 @@ def test_hops_of_a_geometric_series_are_closed_if_it_ends_in_time(contact, upwar
             else:
                 assert rates[0] == rates[1]
                 assert mass.sum() * rates[0] == pytest.approx(mass.sum(axis=0) @ omega)
-    assert told == {"stays open", "closes"}
+    assert told == {"stays open", "closes", "changes"}
 
 
 @pytest.mark.parametrize("upward", [False, True])
@@ -272,6 +297,9 @@ def test_rest_ends_where_the_ground_leaves_what_the_weight_can_hold(factor, upwa
             0.1, rng.uniform(0.1, 1.5), count
         )
         samples[-1] = 0.0
+        k, tau = int(rng.integers(0, 30)), rng.uniform(0, 1)
+        # what was before is over
+        samples[:k] = 9.0
         vertical = 0.2 * rng.normal(size=count) if upward else np.zeros(0)
         blocks = samples.reshape(-1, cases.BLOCK)
         up = vertical.reshape(-1, cases.BLOCK)
@@ -290,7 +318,6 @@ def test_rest_ends_where_the_ground_leaves_what_the_weight_can_hold(factor, upwa
             np.array([0, count]), np.array([count - 1]),
         )  # fmt: skip
         least, most = -1.1, 1.4
-        k, tau = int(rng.integers(0, 30)), rng.uniform(0, 1)
         fine = np.linspace(0, 1, 100)
         first = None
         for j in range(k, count - 1):
@@ -629,6 +656,42 @@ def test_what_turns_alone_is_moved_to_its_contact_event_or_the_end_of_its_step(
                 assert peak == pytest.approx(0.0, abs=1e-12)
                 seen.add((c, kind))
     assert len(seen) == 8
+
+
+def test_what_let_go_in_the_sample_before_is_moved_to_its_contact_event_there(
+    monkeypatch,
+):
+    monkeypatch.setattr(stack_one, "least_hold", lambda *_: 1.0)
+    x = Polynomial([0.0, 1.0])
+    for rng, body, _ in stacks(33, 2):
+        ones, _, impacts = constants_of(body)
+        for c in [c for c in STATES if 0 in c]:
+            for before in (0.0, 1.0):
+                lane = rocking_alone(rng, body, c, 0.1 + 0.02 * x)
+                lane.flag[0], lane.has_before[0] = cases.RELEASE, before
+                lane.before_theta[0], lane.before_left[0] = 0.07 * sum(c), 1.0
+                lane.was_weight[0] = lane.before_weight[0] = lane.weight_end[0] = 1.0
+                case = plain(np.zeros(1, stack_case.CASE)[0])
+                case.c1, case.c2, case.interval, case.near, case.k = *c, H, 9.0, 7
+                worker = SimpleNamespace(
+                    one=lane,
+                    series=[plain(np.zeros(1, taylor.SERIES)[0])],
+                    ones=ones.reshape(1, 9),
+                    impacts=impacts.reshape(1, 9),
+                    state=state_of((0, 0), (0, 0), (0, 0)),
+                )
+                stack_case.contact_event_of_one(
+                    0,
+                    case,
+                    worker,
+                    SimpleNamespace(bodies=[body]),
+                    SimpleNamespace(vertical=np.zeros(0), samples=np.zeros(9)),
+                    G,
+                )
+                # nothing lets go, so that it has come to the end of this sample
+                assert (case.k, case.tau) == (7 - before, 1.0)
+                was = 0.07 if before else 0.1
+                assert abs(lane.was_theta[0]) == pytest.approx(was)
 
 
 def test_of_a_closing_and_a_contact_that_lets_go_before_the_first_is_taken():
