@@ -40,9 +40,14 @@ with plain_library():
     from rockfrag.engines.planar.engine import VELOCITY_STEP
     from rockfrag.engines.planar.records import posed, system_record, working_memory
     from rockfrag.engines.planar.search import (
+        NONE,
+        SEEN,
         Trial,
         _change_to_neighbour,
+        _try_anew,
+        _try_slips,
         prepare,
+        take_mode,
         try_mode,
     )
     from rockfrag.system import (
@@ -1002,6 +1007,21 @@ def test_joint_equations_are_solved_with_rows_exchanged_unless_two_ask_for_the_s
                 assert w.joint[:m] == pytest.approx(np.linalg.solve(a, b))
 
 
+def test_what_no_motion_can_bring_about_is_not_solved():
+    rng = np.random.default_rng(44)
+    p = plain(system_record(as_system(Block(0.4, 1.0, 80.0)), G))
+    w = plain(working_memory())
+    for size in (1, 2, 3):
+        for again in (False, True):
+            w.unknowns[0], w.right[:3] = size, 1.0
+            w.row[:3, 3:] = w.column[:3, 3:] = rng.normal(size=(3, 3))
+            if again:
+                # none takes part in it, or two take the same part
+                w.row[size - 1] = 0.0 if size == 1 else w.row[0]
+            solved = equations._eliminate_contact(p, w, p.standing, 0, False)
+            assert solved != again
+
+
 def test_an_impact_is_of_one_contact_alone_where_one_end_is_closed():
     column = with_contacts(random_column(np.random.default_rng(17), 3), [0.5] * 3)
     p = plain(system_record(column, G))
@@ -1464,6 +1484,46 @@ def test_ties_and_springs_draw_what_touches_as_they_draw_its_bodies():
             assert found == pytest.approx(expected * (not impact), abs=1e-9)
 
 
+def lying(friction):
+    """A block that lies on the ground and does not move, in a mode that it has just come to."""
+    p = plain(system_record(as_system(Block(0.4, 0.3, 80.0)), G))
+    w = plain(working_memory())
+    p.static[0] = p.kinetic[0] = w.along[0] = w.against[0] = friction
+    w.q, w.drive[:], w.kind[:] = p.standing, -1, 1
+    w.touching[0] = w.closed[0] = 1
+    solve.look_at(p, w, w.q)
+    return p, w
+
+
+def test_a_mode_is_tried_once():
+    p, w = lying(0.5)
+    trial = Trial(0.0, 0.0, False, p.weight, G)
+    prepare(p, w, trial)
+    for number in range(3):
+        w.closed[0] = number != 1, True
+        assert _try_anew(p, w, trial, NONE) != SEEN
+        assert w.count == number + 1
+        assert _try_anew(p, w, trial, NONE) == SEEN
+        assert w.count == number + 1
+        w.slides[0] = number
+
+
+@pytest.mark.parametrize("pulls", [0.0, 1.0, -1.0])
+def test_what_may_stick_as_well_as_slide_sticks(pulls):
+    """Without friction, on a ground that is still, it may do either, and on one that moves only slide."""
+    p, w = lying(0.0)
+    trial = Trial(pulls, 0.0, False, p.weight, G)
+    prepare(p, w, trial)
+    w.slides[0] = way = -1 if pulls >= 0 else 1
+    found = _try_anew(p, w, trial, NONE)
+    assert found == 0
+    taken, several = _try_slips(p, w, trial, found)
+    assert several == (pulls == 0.0)
+    take_mode(p, w, w.tried[taken])
+    assert w.slides[0] == (way if pulls else 0)
+    assert w.closed[0].all()
+
+
 def test_a_neighbour_of_a_mode_differs_in_one_thing_that_may_change():
     """An end that touches opens or closes, and what is closed slides otherwise, if nothing else gives its way."""
     w, seen = plain(working_memory()), set()
@@ -1518,6 +1578,11 @@ def test_beside_a_wall_only_what_is_slow_can_be_held_at_once():
     # what sticks to the ground has nothing left that the wall could hold
     w.v[0], w.slides[0] = 0.0, 0
     assert not impacts._can_hold(p, w, 1.0)
+    # so that what the wall has stopped goes on as what slides; with none it sticks
+    for beside, way in itertools.product((1, 0), (-1, 1)):
+        w.closed[1, 0], w.slides[0] = beside, way
+        impacts.read_slip(p, w, 0, 1e-4)
+        assert w.slides[0] == way * beside
 
 
 def test_laws_of_impacts_are_looked_for_at_contacts_and_walls(monkeypatch):

@@ -298,8 +298,9 @@ def test_rest_ends_where_the_ground_leaves_what_the_weight_can_hold(factor, upwa
         )
         samples[-1] = 0.0
         k, tau = int(rng.integers(0, 30)), rng.uniform(0, 1)
-        # what was before is over
-        samples[:k] = 9.0
+        if rng.uniform() < 0.5:
+            # more than it can hold, but that is over by now
+            samples[k], tau = 4.0, rng.uniform(0.9, 1)
         vertical = 0.2 * rng.normal(size=count) if upward else np.zeros(0)
         blocks = samples.reshape(-1, cases.BLOCK)
         up = vertical.reshape(-1, cases.BLOCK)
