@@ -1087,6 +1087,50 @@ def test_what_touches_is_shut_by_moving_all_above_it_and_goes_on_without_parting
     assert shut > 30
 
 
+def rocking():
+    """A slender block that turns about a corner, at its start."""
+    p = plain(system_record(as_system(Block(0.4, 1.0, 80.0)), G))
+    w = plain(working_memory())
+    p.static[0] = p.kinetic[0] = 2.0
+    integrate._begin(p, w, np.array(posed(p, [0.1], [0.3])))
+    return p, w
+
+
+def test_a_step_after_contact_events_on_the_spot_is_the_same_and_counted():
+    still, dt = step.Instant(0.0, 0.0, 0.0), 0.01
+    interval = integrate.Interval(
+        0, still, still, step.Stretch(dt, 0.0, 0.0, 0.0, 0.0), 1
+    )
+    kept = integrate.Kept(
+        np.zeros(0, integrate.SAMPLE), np.zeros(0, integrate.CONTACT_EVENT)
+    )
+    ends = []
+    for idle in (0, integrate.MOST_IDLE, integrate.MOST_IDLE + 1):
+        p, w = rocking()
+        w.tau, w.idle = 0.0, idle
+        integrate._step(p, w, interval, 0.0, kept)
+        assert w.forced == (idle > integrate.MOST_IDLE)
+        ends.append([*w.q[:3], *w.v[:3], w.tau])
+    assert ends[0] == ends[1] == ends[2]
+    assert ends[0][2] > 0.1
+
+
+def test_what_turns_does_not_rest_where_its_slip_ends():
+    for way in (-1, 1):
+        p, w = rocking()
+        now = step.Instant(0.0, 0.0, 0.0)
+        w.slides[0], spin = way, w.v[2]
+        slip = way * 1e-6
+        w.v[0] += slip
+        w.fails[0, step.FRICTION] = 1
+        assert integrate._change_contact(p, w, 0, now) == (False, False)
+        assert (w.slides[0], w.resting) == (0, 0)
+        assert not integrate._stays(p, w)
+        # its corner stands
+        assert impacts.slip_speed(p, w, w.v, 0, False) == pytest.approx(0.0, abs=1e-12)
+        assert w.v[2] == pytest.approx(spin, rel=1e-4)
+
+
 def test_of_what_falls_the_contact_that_is_open_furthest_has_parted():
     rng, w = np.random.default_rng(26), plain(working_memory())
     for _ in range(20):
@@ -1659,6 +1703,23 @@ def test_a_block_comes_down_by_the_law_of_its_contact(law, side):
         expected = min(value, 1.0)
         assert w.v[2] == pytest.approx(side * 0.4 * expected, rel=1e-6)
     assert gave_way == 1
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_squat_block_lies_flat_where_its_law_has_no_rate_to_multiply(side):
+    """Lower than its width over √2 (Housner, 1963): by momentum both ends stay shut, and no law gives way."""
+    law = rockfrag.system.ImpactLaw("couple", 0.9, 0.9)
+    system = with_contacts(rockfrag.Block(1.0, 0.4, 80.0), [5.0], [law])
+    p, w = plain(system_record(system, G)), plain(working_memory())
+    w.drive[:], w.kind[:] = -1, 1
+    w.q, w.v = posed(p, [-side * 1e-13], [side * 0.4])
+    w.old_closed[0] = w.closed[0] = side > 0, side < 0
+    w.touching[0] = 1
+    solve.look_at(p, w, w.q)
+    impacts.strike(p, w, 0.0, 0.0, 0.0)
+    assert w.closed[0].all()
+    assert w.v[:3] == pytest.approx(np.zeros(3), abs=1e-9)
+    assert w.outcome.given_way == 0
 
 
 def test_witnesses_see_the_same_in_impacts_and_in_what_no_contact_could_have_done():
