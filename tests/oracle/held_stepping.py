@@ -1,4 +1,4 @@
-"""An oracle: time stepping of one block between walls, on cords and in wax, plain and slow.
+"""An oracle: time stepping of one block between walls, on cords and brackets, in wax, on a plate, plain and slow.
 
 It shares nothing with the engines: corners of a rectangle, planes, springs and impulses in steps of constant
 length, with Coulomb's law and Newton's ratio, solved by Gauss-Seidel iteration (Moreau 1988; Jean 1999).
@@ -22,10 +22,13 @@ class Held(NamedTuple):
     mu: float  # of its base
     # (x of the face, side, height, friction, ratio)
     walls: np.ndarray
-    # (x, z on the body from the middle of its base; x, z of the end; stiffness, damping, natural length, strength)
+    # (x, z on the body from the middle of its base; x, z of the end; stiffness, damping, length beyond which it is
+    # in tension, strength, length below which it pushes: 0 for a cord)
     cords: np.ndarray
     # (half distance of the pads, capacity of each, capacity in shear), empty: none
     bond: np.ndarray
+    # (mass of the plate, radius of its dish, friction in it, stroke, ratio at its stops), empty: none
+    plate: np.ndarray = np.zeros(0)
 
 
 @numba.njit(cache=True)
@@ -69,8 +72,11 @@ def _rows(q, b, h, mu, walls, points, normals, gaps, mus, ratios):
 
 
 @numba.njit(cache=True)
-def _relax(w, free, mus, glued, p):
-    """Impulses along normals (even rows) and tangents by iteration; what is glued has no bounds."""
+def _relax(w, free, mus, glued, p, plate):
+    """Impulses along normals (even rows) and tangents by iteration; what is glued has no bounds.
+
+    ``plate``: the impulse of its own weight, above 0 if the last pair of rows is that of its stop and its dish.
+    """
     u = free + w @ p
     for _ in range(3000):
         change, largest = 0.0, 1e-300
@@ -81,6 +87,8 @@ def _relax(w, free, mus, glued, p):
                     new = max(0.0, new)
                 else:
                     limit = mus[i // 2] * p[i - 1]
+                    if plate > 0.0 and i == p.size - 1:
+                        limit = mus[i // 2] * max(0.0, p[0] + p[2] + plate)
                     new = min(max(new, -limit), limit)
             largest = max(largest, abs(new))
             u += w[i] * (new - p[i])
@@ -102,11 +110,14 @@ def _pull(q, v, b, h, cords, whole, force):
         dx, dz = dx / length, dz / length
         rx, rz = x - q[0], z - q[1]
         rate = -dx * (v[0] + v[2] * rz) - dz * (v[1] - v[2] * rx)
-        stretch = length - cords[i, 6]
-        if stretch <= 0.0:
+        longer, shorter = length - cords[i, 6], length - cords[i, 8]
+        if longer > 0.0:
+            pulls = max(0.0, cords[i, 4] * longer + cords[i, 5] * rate)
+        elif shorter < 0.0:
+            pulls = min(0.0, cords[i, 4] * shorter + cords[i, 5] * rate)
+        else:
             continue
-        pulls = max(0.0, cords[i, 4] * stretch + cords[i, 5] * rate)
-        if pulls > cords[i, 7]:
+        if abs(pulls) > cords[i, 7]:
             whole[i] = False
             continue
         force[0] += pulls * dx
@@ -115,17 +126,22 @@ def _pull(q, v, b, h, cords, whole, force):
 
 
 @numba.njit(cache=True)
-def _march(sizes, walls, cords, bond, acceleration, dt, step, steps, g):
-    """March; whether it fell, whether it rests turned, broken bond, and the last state."""
+def _march(sizes, walls, cords, bond, plate, acceleration, dt, step, steps, g):
+    """March; whether it fell, whether it rests turned, and the last state: x, z, turn and place of the plate."""
     b, h, mass, mu = sizes
     inertia = mass * (b * b + h * h) / 3.0
-    inverse = np.array([1 / mass, 1 / mass, 1 / inertia])
-    q, v = np.array([0.0, h, 0.0]), np.zeros(3)
-    most = 2 + 3 * walls.shape[0]
+    slides = plate.size > 0
+    inverse = np.array([1 / mass, 1 / mass, 1 / inertia, 0.0])
+    own = 0.0
+    if slides:
+        inverse[3], own = 1 / plate[0], plate[0] * g
+    q, v = np.array([0.0, h, 0.0, 0.0]), np.zeros(4)
+    most = 3 + 3 * walls.shape[0]
     points, normals = np.zeros((most, 2)), np.zeros((most, 2))
     gaps, mus, ratios = np.zeros(most), np.zeros(most), np.zeros(most)
     whole = np.ones(cords.shape[0], np.bool_)
     bonded = bond.size > 0
+    pressed = mass * g
     p = np.zeros(0)
     last = acceleration.size - 1
     substeps = max(1, math.ceil(dt / step - 1e-9))
@@ -137,14 +153,25 @@ def _march(sizes, walls, cords, bond, acceleration, dt, step, steps, g):
             if i < last:
                 a = acceleration[i] + part * (acceleration[i + 1] - acceleration[i])
             n = _rows(q, b, h, mu, walls, points, normals, gaps, mus, ratios)
-            force = np.array([-mass * a, -mass * g, 0.0])
+            force = np.array([-mass * a, -mass * g, 0.0, 0.0])
             _pull(q, v, b, h, cords, whole, force)
-            jacobian = np.zeros((2 * n, 3))
+            if slides:
+                force[3] = -plate[0] * a - (pressed + own) * q[3] / plate[1]
+                side = 1.0 if q[3] >= 0.0 else -1.0
+                gaps[n], mus[n], ratios[n] = plate[3] - side * q[3], plate[2], plate[4]
+                n += 1
+            jacobian = np.zeros((2 * n, 4))
             for c in range(n):
+                if slides and c == n - 1:
+                    jacobian[2 * c, 3], jacobian[2 * c + 1, 3] = -side, 1.0
+                    continue
                 nx, nz = normals[c]
                 rx, rz = points[c, 0] - q[0], points[c, 1] - q[1]
-                jacobian[2 * c] = (nx, nz, nx * rz - nz * rx)
-                jacobian[2 * c + 1] = (nz, -nx, nz * rz + nx * rx)
+                jacobian[2 * c, :3] = (nx, nz, nx * rz - nz * rx)
+                jacobian[2 * c + 1, :3] = (nz, -nx, nz * rz + nx * rx)
+                if c < 2:
+                    # the base slides on the plate
+                    jacobian[2 * c + 1, 3] = -1.0
             before = jacobian @ v
             v += step * inverse * force
             free = jacobian @ v
@@ -161,9 +188,10 @@ def _march(sizes, walls, cords, bond, acceleration, dt, step, steps, g):
                 glued[:2] = True
             if p.size != 2 * n:
                 p = np.zeros(2 * n)
-            _relax(w, free, mus[:n], glued, p)
+            _relax(w, free, mus[:n], glued, p, own * step)
+            pressed = (p[0] + p[2]) / step
             if bonded:
-                pressed, shear = (p[0] + p[2]) / step, (p[1] + p[3]) / step
+                shear = (p[1] + p[3]) / step
                 moment = (p[2] - p[0]) / step * b
                 least = 0.5 * (pressed - abs(moment) / bond[0])
                 bonded = least > -bond[1] and abs(shear) < bond[2] + mu * pressed
@@ -182,7 +210,6 @@ def outcome(held: Held, acceleration, dt, *, step=5e-5, g=9.81) -> tuple[bool, b
     sizes = np.array([held.width / 2, held.height / 2, held.mass, held.mu])
     values = np.ascontiguousarray(acceleration, dtype=float)
     steps = round(TAIL / dt)
-    fell, leans, _, _ = _march(
-        sizes, held.walls, held.cords, held.bond, values, dt, step, steps, g
-    )
+    rows = held.walls, held.cords, held.bond, held.plate
+    fell, leans, _, _ = _march(sizes, *rows, values, dt, step, steps, g)
     return bool(fell), bool(leans)

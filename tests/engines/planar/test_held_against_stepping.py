@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, overturns
-from rockfrag.system import Bond, Tie, Wall, as_system, hold
+from rockfrag.system import Bond, SlidingPendulum, Tie, Wall, as_system, hold
 
 from ...oracle.held_stepping import Held, outcome
 from ...simulation.reference_bodies import random_motion
 from .cases import DT
 
 NONE = np.zeros((0, 5))
-NO_CORDS = np.zeros((0, 8))
+NO_CORDS = np.zeros((0, 9))
 
 
 def drawn_walls(rng, block):
@@ -47,8 +47,37 @@ def drawn_ties(rng, block):
         ties.append(
             Tie((0, 0, top), (end, 0, top), stiffness, damping, slack, strength)
         )
-        rows.append((0, top, end, top, stiffness, damping, abs(end) + slack, strength))
+        long = abs(end) + slack
+        rows.append((0, top, end, top, stiffness, damping, long, strength, 0.0))
     return ties, {"cords": np.array(rows)}
+
+
+def drawn_brackets(rng, block):
+    """A bracket at the top of a block, with play or not, strong or weak, for both."""
+    weight, top = block.mass * 9.81, block.height
+    play = rng.choice([0.0, rng.uniform(0.0, 0.1) * block.width])
+    stiffness = weight * 10 ** rng.uniform(1.5, 2.5) / block.height
+    strength = rng.choice([math.inf, weight * rng.uniform(0.1, 0.8)])
+    damping = 0.02 * math.sqrt(stiffness * block.mass)
+    end = rng.choice([-1, 1]) * rng.uniform(1.0, 3.0) * block.width
+    tie = Tie(
+        *((0, 0, top), (end, 0, top), stiffness, damping, play, strength), bracket=True
+    )
+    lengths = abs(end) + play, abs(end) - play
+    row = (0, top, end, top, stiffness, damping, lengths[0], strength, lengths[1])
+    return [tie], {"cords": np.array([row])}
+
+
+def drawn_plate(rng, block):
+    """A plate in a dish under a block, which meets its stops or not, for both."""
+    mass, radius = block.mass * rng.uniform(0.05, 0.3), rng.uniform(0.4, 2.0)
+    mu, stroke, ratio = rng.uniform(0.03, 0.12), rng.uniform(0.02, 0.15), 0.0
+    if rng.uniform() < 0.5:
+        ratio = 0.4
+    dish = SlidingPendulum(
+        mass=mass, radius=radius, friction=mu, stroke=stroke, restitution=ratio
+    )
+    return dish, {"plate": np.array([mass, radius, mu, stroke, ratio])}
 
 
 def drawn_bond(rng, block):
@@ -61,8 +90,17 @@ def drawn_bond(rng, block):
     }
 
 
+DRAWN = {
+    "walls": drawn_walls,
+    "ties": drawn_ties,
+    "brackets": drawn_brackets,
+    "bonds": drawn_bond,
+    "plates": drawn_plate,
+}
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["walls", "ties", "bonds"])
+@pytest.mark.parametrize("kind", DRAWN)
 def test_outcomes_are_those_of_a_plain_time_stepping(kind: str) -> None:
     rng, same, fell = np.random.default_rng(12), 0, 0
     for _ in range(60):
@@ -70,13 +108,14 @@ def test_outcomes_are_those_of_a_plain_time_stepping(kind: str) -> None:
         block = Block(width, width * rng.uniform(2.5, 5.0), rng.uniform(20, 200))
         motion = rng.uniform(1.0, 4.0) * random_motion(rng)[:600]
         mu = rng.uniform(0.35, 0.8)
-        draw = {"walls": drawn_walls, "ties": drawn_ties, "bonds": drawn_bond}[kind]
-        given, rows = draw(rng, block)
-        held = (
-            hold(as_system(block), bonds=given)
-            if isinstance(given, Bond)
-            else hold(as_system(block), *given)
-        )
+        given, rows = DRAWN[kind](rng, block)
+        held = as_system(block)
+        if kind == "bonds":
+            held = hold(held, bonds=given)
+        elif kind == "plates":
+            held = hold(held, support=given)
+        else:
+            held = hold(held, *given)
         plain = {"walls": NONE, "cords": NO_CORDS, "bond": np.zeros(0)} | rows
         oracle = outcome(
             Held(block.width, block.height, block.mass, mu, **plain), motion, DT
