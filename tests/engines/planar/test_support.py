@@ -151,6 +151,23 @@ def test_what_is_stopped_below_sends_off_what_it_carries_at_once(
     assert found.paradoxes == 0
 
 
+def test_no_impact_on_a_plate_aside_of_its_middle_gains_energy() -> None:
+    """The plate keeps its height, so that the slope of its dish may give nothing in an impact."""
+    rng, met = np.random.default_rng(0), 0
+    dish = SlidingPendulum(mass=8.0, radius=0.5, friction=0.08, stroke=0.2)
+    system = isolated(dish, Block(0.2, 0.9, M))
+    for _ in range(6):
+        motion = rng.uniform(2.0, 4.0) * random_motion(rng)[:800]
+        found = run(system, motion, friction=0.7, closing=1e-3)
+        impacts = found.contact_events
+        impacts = impacts[impacts["kind"] == "impact"]
+        met += len(impacts)
+        gained = impacts["energy_after"] - impacts["energy_before"]
+        assert (gained <= 1e-9 * impacts["energy_before"]).all()
+        assert found.paradoxes == 0
+    assert met > 20
+
+
 def test_a_bilinear_isolator_is_a_spring_until_it_yields_and_its_loop_is_lost() -> None:
     stiffness, strength, yields = 2000.0, 100.0, 0.005
     support = BilinearIsolator(

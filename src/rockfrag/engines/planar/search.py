@@ -117,7 +117,7 @@ def _list_equations(p, w, k, impact):
     One equation for the normal force of each closed end, one for the shear of a contact that sticks, one for the
     couple that a law of restitution asks for (``docs/contact.md``, 3; impacts 7).
     """
-    friction = rubbing(p, w, w.q, k)
+    friction = rubbing(p, w, w.q, k, impact)
     m, needs_shear = 3 * k, w.slides[k] == 0
     for end in range(2):
         if w.closed[k, end] == 0:
@@ -236,7 +236,8 @@ def try_mode(p, w, trial):
         if closed < 0 or w.whole[k] == BONDED:
             continue
         if slides == 0:
-            shear += slope(p, w, w.q, k) * pressed
+            if not trial.impact:
+                shear += slope(p, w, w.q, k) * pressed
             limit = w.along[k] if w.slid[k] * shear >= 0.0 else w.against[k]
             margin = (limit * pressed - abs(shear)) / max(limit, 1.0)
             worst = _note_worst(

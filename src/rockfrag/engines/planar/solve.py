@@ -234,7 +234,7 @@ def _fill_equations(p, w, q, v, k, sought):
     ``w.drive`` (-1 if none) depart at the speed ``w.depart``.
     """
     impact = sought.impact
-    friction = rubbing(p, w, q, k) if sought.rubs else 0.0
+    friction = rubbing(p, w, q, k, impact) if sought.rubs else 0.0
     m = 3 * k
     first = True
     for end in range(2):
@@ -330,7 +330,7 @@ def _keep_forces(p, w, q, impact, standing):
     for k in range(p.contacts):
         w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0
     for k in range(standing, p.contacts):
-        friction = rubbing(p, w, q, k)
+        friction = rubbing(p, w, q, k, impact)
         for i in range(3 * k, 3 * k + w.unknowns[k]):
             force, end = w.force[i], w.what[i]
             if end == SHEAR:

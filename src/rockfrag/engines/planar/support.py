@@ -29,10 +29,13 @@ def slope(p, w, q, k):
 
 
 @inlined_kernel
-def rubbing(p, w, q, k):
-    """Force against the slip of contact k over its normal force [-]: of friction, and of the slope of a dish."""
+def rubbing(p, w, q, k, impact):
+    """Force against the slip of contact k over its normal force [-]: of friction, and of the slope of a dish.
+
+    In an ``impact`` of friction alone: a plate that keeps its height would else gain what its slope takes upwards.
+    """
     found = w.slides[k] * p.kinetic[k]
-    if w.whole[k] == GUIDED and w.slides[k] != 0:
+    if w.whole[k] == GUIDED and w.slides[k] != 0 and not impact:
         found += slope(p, w, q, k)
     return found
 
