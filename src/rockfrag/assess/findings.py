@@ -38,9 +38,7 @@ from rockfrag.words.findings import (
 
 MOST_SOURCES = 3  # Sources of uncertainty that are named in a line
 MOST_ASSUMPTIONS = 3  # Assumptions that are named in a line; the page has all
-MANY_LEAN = (
-    0.05  # Fraction of motions that leave it leaning from which it is said at once
-)
+MANY_LEAN = 0.05  # Fraction of motions that leave it leaning which is said at once
 MOST_CHANGES = 3  # Changes that are named in a line
 
 # Annual rates between which a level and a hazard fit each other [1/year]
@@ -150,9 +148,9 @@ def left_leaning(found: Assessment) -> list[Finding]:
     if found.leans is None or found.fraction is None:
         return []
     leans = found.leans.value - found.fraction.value
-    return (
-        [finding(Text.LEFT_LEANING, part=percent(leans))] if leans > MANY_LEAN else []
-    )
+    if leans <= MANY_LEAN:
+        return []
+    return [finding(Text.LEFT_LEANING, part=percent(leans))]
 
 
 def few_earthquakes(found: Assessment) -> bool:

@@ -29,9 +29,8 @@ LOSSES = 24  # Losses of which it is said how often they are exceeded
 OF_NO_BODY = ("model", "space", "conversion")
 """Sources of uncertainty that all objects share: of the model, and of the hazard's measure at the site."""
 
-_ROUNDING = (
-    1e-12  # of a sum of values, which must not take away what reaches a loss exactly
-)
+_ROUNDING = 1e-12
+"""Of a sum of values, which must not take away what reaches a loss exactly."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +74,7 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
     )
     lifting = np.array([assessment.outcomes.lifts_from() for assessment in found])
     order = np.argsort(lifting, axis=0, kind="stable")
+    rising = np.take_along_axis(lifting, order, axis=0)
     evidence = [assessment.evidence for assessment in found]
     shared = _shared(evidence)
     weighed = [
@@ -85,7 +85,7 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
             worth=each,
             outcomes=together,
             toppled=np.tensordot(each, fell, axes=1),
-            lifting=np.take_along_axis(lifting, order, axis=0),
+            lifting=rising,
             lifted=np.cumsum(each[order], axis=0),
         )
         for each in (np.ones(len(found)), worth)
@@ -111,9 +111,8 @@ class _Together:
     worth: Floats  # What each counts, shape (objects,)
     outcomes: ObjectOutcomes  # Of one object, with the levels that are allowed for all
     toppled: Floats  # Worth of what a motion topples, shape (motions, levels)
-    lifting: (
-        Floats  # Levels at which motions lift objects, rising, shape (objects, motions)
-    )
+    # Levels at which motions lift objects, rising, shape (objects, motions)
+    lifting: Floats
     lifted: Floats  # Worth of what is lifted from there, shape (objects, motions)
 
     def losing(self, least: float, hazard: HazardCurve) -> tuple[Evidence, float]:

@@ -224,7 +224,7 @@ def held_by(system: System) -> str:
     """
     named = {"support": "isolator"}
     words = [named.get(name, name) for name in system.holding]
-    if system.contacts[0].friction == mounts.ROLLING:
+    if _rolls(system):
         words.append("casters that roll")
     return ", ".join(words)
 
@@ -242,14 +242,17 @@ def rocks_like_free(system: System) -> bool:
     -------
     False with a bond, an isolator, a wall that touches, or casters that roll.
     """
-    if system.bonds or system.support is not None:
-        return False
-    if system.contacts[0].friction == mounts.ROLLING:
+    if system.bonds or system.support is not None or _rolls(system):
         return False
     walls = [each for each in system.constraints if isinstance(each, Wall)]
     return all(
         wall.distance > mounts.reach(system, wall.side) + TOUCHES for wall in walls
     )
+
+
+def _rolls(system: System) -> bool:
+    """Whether an arrangement stands on free casters."""
+    return system.contacts[0].friction == mounts.ROLLING
 
 
 def _wall(system: System, stated: Mapping[str, Any], column: str, side: int) -> Wall:

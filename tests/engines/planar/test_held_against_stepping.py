@@ -30,7 +30,7 @@ def drawn_walls(rng, block):
             Wall(at, 0.0 if side > 0 else math.pi, height, (mu, mu), float(ratio))
         )
         rows.append((side * at, side, height, mu, ratio))
-    return walls, {"walls": np.array(rows)}
+    return hold(as_system(block), *walls), {"walls": np.array(rows)}
 
 
 def drawn_ties(rng, block):
@@ -49,7 +49,7 @@ def drawn_ties(rng, block):
         )
         long = abs(end) + slack
         rows.append((0, top, end, top, stiffness, damping, long, strength, 0.0))
-    return ties, {"cords": np.array(rows)}
+    return hold(as_system(block), *ties), {"cords": np.array(rows)}
 
 
 def drawn_brackets(rng, block):
@@ -65,7 +65,7 @@ def drawn_brackets(rng, block):
     )
     lengths = abs(end) + play, abs(end) - play
     row = (0, top, end, top, stiffness, damping, lengths[0], strength, lengths[1])
-    return [tie], {"cords": np.array([row])}
+    return hold(as_system(block), tie), {"cords": np.array([row])}
 
 
 def drawn_plate(rng, block):
@@ -77,7 +77,8 @@ def drawn_plate(rng, block):
     dish = SlidingPendulum(
         mass=mass, radius=radius, friction=mu, stroke=stroke, restitution=ratio
     )
-    return dish, {"plate": np.array([mass, radius, mu, stroke, ratio])}
+    plate = np.array([mass, radius, mu, stroke, ratio])
+    return hold(as_system(block), support=dish), {"plate": plate}
 
 
 def drawn_bond(rng, block):
@@ -85,9 +86,9 @@ def drawn_bond(rng, block):
     tension = block.mass * 9.81 * rng.uniform(0.1, 1.5)
     spread = rng.uniform(0.3, 1.0) * block.width / 2
     shear = block.mass * 9.81 * rng.uniform(0.2, 1.0)
-    return Bond(tension, shear, spread), {
-        "bond": np.array([spread, tension / 2, shear])
-    }
+    wax = Bond(tension, shear, spread)
+    pads = np.array([spread, tension / 2, shear])
+    return hold(as_system(block), bonds=wax), {"bond": pads}
 
 
 DRAWN = {
@@ -108,14 +109,7 @@ def test_outcomes_are_those_of_a_plain_time_stepping(kind: str) -> None:
         block = Block(width, width * rng.uniform(2.5, 5.0), rng.uniform(20, 200))
         motion = rng.uniform(1.0, 4.0) * random_motion(rng)[:600]
         mu = rng.uniform(0.35, 0.8)
-        given, rows = DRAWN[kind](rng, block)
-        held = as_system(block)
-        if kind == "bonds":
-            held = hold(held, bonds=given)
-        elif kind == "plates":
-            held = hold(held, support=given)
-        else:
-            held = hold(held, *given)
+        held, rows = DRAWN[kind](rng, block)
         plain = {"walls": NONE, "cords": NO_CORDS, "bond": np.zeros(0)} | rows
         oracle = outcome(
             Held(block.width, block.height, block.mass, mu, **plain), motion, DT

@@ -1678,6 +1678,19 @@ def test_a_corner_leaves_a_smooth_wall_by_its_ratio(side):
         assert after == pytest.approx(-ratio * before)
 
 
+def come_down(block, law, side):
+    """A block after it has come down at .4 rad/s on the corner of a side, by a law."""
+    p = plain(system_record(with_contacts(block, [5.0], [law]), G))
+    w = plain(working_memory())
+    w.drive[:], w.kind[:] = -1, 1
+    w.q, w.v = posed(p, [-side * 1e-13], [side * 0.4])
+    w.old_closed[0] = w.closed[0] = side > 0, side < 0
+    w.touching[0] = 1
+    solve.look_at(p, w, w.q)
+    impacts.strike(p, w, 0.0, 0.0, 0.0)
+    return w
+
+
 @pytest.mark.parametrize("law", ["position", "couple", "ratio"])
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_block_comes_down_by_the_law_of_its_contact(law, side):
@@ -1689,16 +1702,7 @@ def test_a_block_comes_down_by_the_law_of_its_contact(law, side):
         own = 1 - 1.5 * b**2 / (h**2 + b**2)
         # Housner (1963); more than it came with it cannot have
         value = own * rng.uniform(0.8, 0.95) if number else 1.01
-        system = with_contacts(
-            block, [5.0], [rockfrag.system.ImpactLaw(law, value, value)]
-        )
-        p, w = plain(system_record(system, G)), plain(working_memory())
-        w.drive[:], w.kind[:] = -1, 1
-        w.q, w.v = posed(p, [-side * 1e-13], [side * 0.4])
-        w.old_closed[0] = w.closed[0] = side > 0, side < 0
-        w.touching[0] = 1
-        solve.look_at(p, w, w.q)
-        impacts.strike(p, w, 0.0, 0.0, 0.0)
+        w = come_down(block, rockfrag.system.ImpactLaw(law, value, value), side)
         gave_way += w.outcome.given_way
         expected = min(value, 1.0)
         assert w.v[2] == pytest.approx(side * 0.4 * expected, rel=1e-6)
@@ -1709,14 +1713,7 @@ def test_a_block_comes_down_by_the_law_of_its_contact(law, side):
 def test_a_squat_block_lies_flat_where_its_law_has_no_rate_to_multiply(side):
     """Lower than its width over √2 (Housner, 1963): by momentum both ends stay shut, and no law gives way."""
     law = rockfrag.system.ImpactLaw("couple", 0.9, 0.9)
-    system = with_contacts(rockfrag.Block(1.0, 0.4, 80.0), [5.0], [law])
-    p, w = plain(system_record(system, G)), plain(working_memory())
-    w.drive[:], w.kind[:] = -1, 1
-    w.q, w.v = posed(p, [-side * 1e-13], [side * 0.4])
-    w.old_closed[0] = w.closed[0] = side > 0, side < 0
-    w.touching[0] = 1
-    solve.look_at(p, w, w.q)
-    impacts.strike(p, w, 0.0, 0.0, 0.0)
+    w = come_down(rockfrag.Block(1.0, 0.4, 80.0), law, side)
     assert w.closed[0].all()
     assert w.v[:3] == pytest.approx(np.zeros(3), abs=1e-9)
     assert w.outcome.given_way == 0

@@ -159,7 +159,7 @@ def integrate(
                 break
         if s.bonded:
             holders.note_bond(body, y, 0.0, s)
-        ahead, stuck, patience, lost = pass_interval(
+        ahead, stuck, patience, lost = cross_interval(
             body, dt, y, tolerance, cut, ahead, stuck, patience,
             peaks[min(k, last)], scale, (k + 1) * dt, out, s,
         )  # fmt: skip
@@ -219,7 +219,7 @@ def finish(body, y, started, g, out, s):
 
 
 @kernel
-def pass_interval(
+def cross_interval(
     body, dt, y, tolerance, cut, ahead, stuck, patience, soon, scale, ends, out, s
 ):
     """Integrate to the end of an interval, or to a fall.
