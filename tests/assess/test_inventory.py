@@ -11,6 +11,7 @@ from rockfrag.assess.inventory import (
     FaultyRows,
     assess_each,
     assess_inventory,
+    inventory_lines,
     inventory_table,
     joint_lines,
     read_inventory,
@@ -223,3 +224,18 @@ def test_what_cannot_be_held_so_is_left_out_by_its_name(few, tmp_path, monkeypat
     requests, _ = read_inventory(path, {"pga": "0.4 g"})
     with pytest.raises(FaultyRows, match="vase"):
         assess_each(requests, few)
+
+
+def test_what_is_left_leaning_is_said_in_its_line_and_in_the_table(
+    few, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("rockfrag.assess.inventory.motion_set", lambda *_: few)
+    path = tmp_path / "shelves.csv"
+    path.write_text("name,width_cm,height_cm,wall_cm\nfar,30,180,60\nnear,30,180,2\n")
+    found = assess_inventory(path, {"pga": "0.6 g"})
+    lines = {line.split()[1]: line for line in inventory_lines(found)[1:]}
+    assert "leave it leaning" in lines["far"] and "leaning" not in lines["near"]
+    table = inventory_table(found).set_index("name")
+    alone = table["fraction_or_leaning"] - table["fraction"]
+    assert alone["far"] > 0.05 >= alone["near"]
+    assert f"{100 * alone['far']:.2g} % leave" in lines["far"]

@@ -146,13 +146,17 @@ def test_what_leans_at_the_end_is_told(tmp_path, capsys):
     assert told in capsys.readouterr().out
 
 
-def test_what_holds_a_body_in_space_is_simulated_in_python(simulated, record):
+def test_what_holds_a_body_in_space_says_what_it_bears_or_is_refused(simulated, record):
     case = ("--body", "0.2", "0.8", "60", "--depth", "0.2", "--second", str(record))
-    for option, (numbers, _) in HELD.items():
-        wrong = simulated(*case, option, *numbers, status=2)
-        assert wrong.err.startswith("--second: the command simulates what holds")
-        assert "use rockfrag.overturns in Python" in wrong.err
-        assert wrong.err.count("\n") == 1
+    for option, (numbers, says) in HELD.items():
+        refused = option in ("--kerb", "--pendulum", "--springs")
+        said = simulated(*case, option, *numbers, status=2 * refused)
+        if refused:
+            assert said.err.count("\n") == 1 and "leave" in said.err
+        else:
+            assert says.split(" 40 N")[0] in said.out
+    free = simulated(*case, "--friction", "0.5", "--casters", "free").out
+    assert "largest tilt [rad]: 0.00000" in free
 
 
 def test_a_column_is_given_from_above(simulated, record, capsys):

@@ -13,8 +13,9 @@ import pandas as pd
 import yaml
 
 from rockfrag.base.errors import LONGEST_MESSAGE, InputError
+from rockfrag.base.yaml_file import read_yaml
 from rockfrag.report.part import Results
-from rockfrag.study.loading import load_any
+from rockfrag.stages.running import prepared
 
 from ..case_tables import case_tables
 from .checked_report import check_first_page, check_report
@@ -97,7 +98,7 @@ def fate(study: Foreign, folder: Path) -> tuple[int, list[str]]:
     path = write(study, folder)
     (folder / "shaker.yaml").write_text(yaml.safe_dump(TABLES["shaker"]))
     try:
-        loaded = load_any(path)
+        loaded, _ = prepared(read_yaml(path), path)
     except InputError as error:
         return 2, _one_sentence(str(error))
     try:

@@ -68,6 +68,7 @@ def as_json(found: Assessment) -> str:
         "counts": _counts(found),
         "fraction_toppling_with_sliding": found.sliding_fraction,
         "fraction_toppling": found.fraction,
+        "fraction_toppling_or_left_leaning": found.leans,
         "probability": found.probability,
         "decision": found.decision,
         "amplitude_toppling": {f"{p:g}": e for p, e in found.amplitudes.items()},

@@ -145,12 +145,16 @@ def first_screen(found: Assessment) -> list[Finding]:
 
 def left_leaning(found: Assessment) -> list[Finding]:
     """How many motions leave it leaning at a wall or in a tie beside those that topple it, where they are many."""
+    part = many_lean(found)
+    return [] if part is None else [finding(Text.LEFT_LEANING, part=percent(part))]
+
+
+def many_lean(found: Assessment) -> float | None:
+    """Fraction of motions that leave it leaning and do not topple it; None where that is unknown or small."""
     if found.leans is None or found.fraction is None:
-        return []
+        return None
     leans = found.leans.value - found.fraction.value
-    if leans <= MANY_LEAN:
-        return []
-    return [finding(Text.LEFT_LEANING, part=percent(leans))]
+    return leans if leans > MANY_LEAN else None
 
 
 def few_earthquakes(found: Assessment) -> bool:

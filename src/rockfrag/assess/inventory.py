@@ -29,7 +29,12 @@ from rockfrag.assess.answer import (
 )
 from rockfrag.assess.core.decisions import Action
 from rockfrag.assess.core.likelihood import likelihood_of
-from rockfrag.assess.findings import estimate_of, few_earthquakes, mitigation
+from rockfrag.assess.findings import (
+    estimate_of,
+    few_earthquakes,
+    many_lean,
+    mitigation,
+)
 from rockfrag.assess.joint_risk import JointRisk, joint_risk
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
@@ -462,6 +467,7 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
         for name, estimate in (
             ("probability", found.probability),
             ("fraction", found.fraction),
+            ("fraction_or_leaning", found.leans),
         ):
             if estimate is not None:
                 row |= {name: estimate.value, f"{name}_lower": estimate.lower}
@@ -594,8 +600,12 @@ def fares_of(found: Assessment) -> Value:
     if found.does_not_move:
         return finding(Text.DOES_NOT_MOVE)
     likelihood = finding(likelihood_of(found.fraction.value).value)
-    chance = estimate_of(found.fraction)
-    return finding(Text.FARES_LIKELY, likelihood=likelihood, chance=chance)
+    about: dict[str, Value] = {"likelihood": likelihood}
+    about["chance"] = estimate_of(found.fraction)
+    part = many_lean(found)
+    if part is not None:
+        return finding(Text.FARES_LEANING, part=percent(part), **about)
+    return finding(Text.FARES_LIKELY, **about)
 
 
 def _half(found: Assessment) -> Finding:

@@ -305,6 +305,7 @@ class Text(StrEnum):
     NONE_LEFT_OUT = auto()
     FARES_YEARS = auto()
     FARES_LIKELY = auto()
+    FARES_LEANING = auto()
     DOES_NOT_MOVE = auto()
     BRIEF_LEAVE = auto()
     BRIEF_SECURE = auto()

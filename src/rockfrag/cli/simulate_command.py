@@ -189,8 +189,7 @@ def _in_plane(
         # what `simulate` doubts of the acceleration has been said
         warnings.simplefilter("ignore", UserWarning)
         system = system_of(body, **_contacts(options, body))
-        if is_held(options):
-            system = held(options, system)
+        system = held(options, system)
         response = simulate(system, scaled.acceleration, motion.dt, vertical=up)
     peak = scaled.pga / GRAVITY
     is_loose = options.friction is not None or is_held(options)
@@ -210,17 +209,15 @@ def _in_space(
     from rockfrag.motions.processing import scale
     from rockfrag.records.motion import GroundMotion
     from rockfrag.simulation import simulate
+    from rockfrag.simulation.options import system_of
 
-    if is_held(options):
-        raise InputError(
-            "--second: the command simulates what holds a body in its plane only; leave it out, or use "
-            "rockfrag.overturns in Python, which has walls, cords, brackets, wax and casters in space."
-        )
     block, components = _case_in_space(options, body, motion, options.vertical)
     scaled = [scale(component, factor) for component in components]
-    response: Any = simulate(block, GroundMotion(*scaled), **_contacts(options, body))
+    system = held(options, system_of(block, **_contacts(options, body)))
+    response: Any = simulate(system, GroundMotion(*scaled))
     peaks = [component.pga / GRAVITY for component in scaled]
-    lines = lines_in_space(options.record, peaks, response.outcome)
+    lines = lines_in_space(options.record, peaks, response)
+    lines += lines_on_holding(response)
     return _Simulated(response, motion.name, lines)
 
 

@@ -26,6 +26,8 @@ MEANING_IN_A_COLUMN = (
     "edge, F is off it"
 )
 
+LEANS = "not overturned: it leans against a wall or hangs in a tie at the end"
+
 LARGEST_FRICTION = 10.0  # surfaces have less; a contact that needs more parts
 
 
@@ -60,7 +62,7 @@ def lines_in_plane(
         body, time = response.overturned_body, response.overturning_time
         outcome = f"overturned: the {body}, at {time:.3f} s"
     elif response.leaning:
-        outcome = "not overturned: it leans against a wall or hangs in a tie at the end"
+        outcome = LEANS
     lines = [
         f"{record}: peak {peak_g:.4f} g, {samples} samples of {motion.dt} s",
         outcome,
@@ -112,25 +114,27 @@ def contact_event_lines(contact_events: Sequence[Any], most: int) -> list[str]:
     return lines
 
 
-def lines_in_space(record: str, peaks_g: Sequence[float], found: Any) -> list[str]:
+def lines_in_space(record: str, peaks_g: Sequence[float], response: Any) -> list[str]:
     """Lines on a body in space.
 
     Parameters
     ----------
     record, peaks_g : name of the file, and peaks of the components [g]
-    found : outcome of the body
+    response : a :class:`rockfrag.engines.spatial.SpatialResponse`
 
     Returns
     -------
     The lines.
     """
-    outcome = "not overturned"
+    outcome, found = "not overturned", response.outcome
     if found.overturned:
         direction = math.degrees(found.fall_direction)
         outcome = (
             f"overturned over {found.fell_over}, {direction:.0f}° from the first component towards the second, "
             f"certain at {found.certain_time:.3f} s"
         )
+    elif found.leaning:
+        outcome = LEANS
     return [
         f"{record}: peaks {_each(peaks_g, '.4f')} g",
         outcome,

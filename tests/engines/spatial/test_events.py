@@ -720,11 +720,11 @@ def test_contacts_that_part_slowly_stay_closed_and_are_held():
     s.which[:3] = 1, 2, 4
     # it pushes and sticks; it leaves slowly and slides; it leaves
     s.after[:9] = 0.0, 0.0, 0.0, 0.6, -0.8, 0.5 * limits.CLOSE, 0.0, 0.0, 0.3
-    hops.keep_slow_contacts(body, y, rotation(y), (0.0, 0.0, -G), 3, 0b001, s)
+    hops.keep_slow_contacts(body, y, rotation(y), (0.0, 0.0, -G), 3, 0b001, True, s)
     # beside the one that pushes it hops, and sticks
     assert s.closed[: s.count].tolist() == [1, 2]
     assert s.slides[:2].tolist() == [forces.STICKS, forces.STICKS]
-    hops.keep_slow_contacts(body, y, rotation(y), (0.0, 0.0, -G), 3, 0b101, s)
+    hops.keep_slow_contacts(body, y, rotation(y), (0.0, 0.0, -G), 3, 0b101, True, s)
     assert s.closed[: s.count].tolist() == [1, 2, 4]
     assert s.slides[:3].tolist() == [forces.STICKS, forces.SLIDES, forces.STICKS]
     assert s.rests == 0

@@ -423,3 +423,19 @@ def test_what_space_cannot_hold_is_refused_in_a_sentence():
     same = Tie((0.0, 0.0, 1.0), (0.0, 0.0, 1.0), 1e5)
     with pytest.raises(InputError, match="one place"):
         shaken(hold(BOX.system(), same), motion)
+
+
+@pytest.mark.parametrize("walls", [0, 1, 2])
+def test_friction_beside_walls_hardly_ever_leaves_nothing_that_goes_on(walls):
+    """Of 36 histories one at most has no force or impulse, and no wall bears more than the weight of what rocks."""
+    beside = [Wall(BOX.width / 2 + 0.01, angle) for angle in (0.0, math.pi)[:walls]]
+    without = 0
+    for seed in range(40, 46):
+        rng = np.random.default_rng(seed)
+        for friction in (0.35, 0.5, 0.65):
+            system = BOX.system().with_friction(Friction(friction, friction))
+            motion = synthetic_motion(rng, 3)
+            found = shaken(hold(system, *beside), motion, (0.35, 0.5))
+            without += np.count_nonzero(found.paradoxes)
+            assert not (found.largest_force > BOX.mass * G).any()
+    assert without <= 1

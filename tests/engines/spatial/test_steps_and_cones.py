@@ -49,6 +49,7 @@ from .plain_space import cone as cones
 
 with plain_library():
     from rockfrag.engines.algebra import vectors as algebra
+    from rockfrag.engines.spatial import _relax as relax
 
 MODES = {
     "flight": ((), ()),
@@ -694,3 +695,27 @@ def test_a_body_lies_flat_only_where_it_neither_leans_nor_turns_nor_rises(place,
     assert points.lies_flat(body, y, rotation(y)) == flat
     y = leaning(body, 1e-3, 0.4)
     assert not points.lies_flat(body, y, rotation(y))
+
+
+def test_a_wall_and_the_friction_of_a_foot_share_what_neither_bears_alone():
+    """A point that stands before a smooth wall and is driven into it: friction bears 0.5 of 9.81 of 12."""
+    s = plain(np.zeros((), forces.CASE))
+    s.which[:2] = 0, solid.WALLS
+    s.given[1], s.way[1, 0] = 1, 1.0
+    s.holds[0] = s.friction[0] = 0.5
+    rows = np.zeros((6, 3))
+    rows[0, 0] = rows[1, 1] = rows[2, 2] = rows[3, 1] = rows[4, 2] = 1.0
+    rows[5, 0] = -1.0  # away from the wall
+    s.delassus[:6, :6] = rows @ rows.T
+    s.free[:6] = rows @ (12.0, 0.0, -G)
+    found, _ = cones.solve_cones(s, 2, 0)
+    assert found == 0b11
+    shear, normal, pressed = -s.impulse[0], s.impulse[2], s.impulse[5]
+    assert abs(shear) <= 0.5 * normal * (1 + 1e-9)
+    np.testing.assert_allclose([shear + pressed, normal], [12.0, G], rtol=1e-9)
+    np.testing.assert_allclose(s.after[:6], 0, atol=1e-9)
+    # one after the other, from no impulse at all
+    s.impulse[:6], s.grip[0] = 0.0, 0.5
+    assert relax.relax(s, 2, 1e-12)
+    assert abs(s.impulse[0]) <= 0.5 * s.impulse[2]
+    np.testing.assert_allclose(rows.T @ s.impulse[:6], (-12.0, 0.0, G), atol=1e-10)

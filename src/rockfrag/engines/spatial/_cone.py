@@ -30,10 +30,12 @@ from rockfrag.engines.spatial._forces import (
     MOST,
     in_set,
     largest_compliance,
+    picks_wall,
     push_by_two,
     stick_together,
     stop_at,
 )
+from rockfrag.engines.spatial._relax import relax
 
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
 """Sets of four contacts as bits, the smallest first."""
@@ -45,8 +47,9 @@ CLOSE_ENOUGH = 1e-13
 # velocity over the largest one to stop that is rounding [-]; shear beyond a cone, over its limit, that is [-];
 # difference of energy over the square of that velocity below which two sets do equally well [-]
 ROUNDING, ON_CONE, EQUAL = 1e-11, 1e-12, 1e-12
-# slip over the largest velocity to stop above which a contact slides [-]
-SLIPS = 1e-9
+# slip over the largest velocity to stop above which a contact slides, and velocity over it at which a contact that
+# does not push may be approached beside walls [-]
+SLIPS, PRESSED = 1e-9, 1e-9
 NEWTON_STEPS = 32
 # part of a step by which the residual has to fall, else the step is halved [-]; residual over the wanted one that
 # will do at last [-]
@@ -603,6 +606,8 @@ def solve_cones(s, n, least):
     chosen, solutions = fewest(s, n, least, False)
     if chosen < 0:
         chosen, solutions = fewest(s, n, least, True)
+    if chosen < 0:
+        chosen, solutions = shared(s, n, least)
     if chosen >= 0:
         for i in range(3 * n):
             s.impulse[i] = s.best[i]
@@ -619,11 +624,7 @@ def fewest(s, n, least, slide):
     Returned are the set, as bits, -1 if there is none, and how many sets of that size there are; s.best has its
     impulses. Sets are tried by size, so that larger ones are left out as soon as one is found.
     """
-    largest, scale = largest_compliance(s, n), TINY
-    for i in range(3 * n):
-        # the largest velocity (or acceleration) that there is to stop
-        scale = max(scale, abs(s.free[i]))
-    small = ROUNDING * scale
+    largest, scale = largest_compliance(s, n), velocity_to_stop(s, n)
     chosen, solutions, size_found, lowest = -1, 0, MOST, 0.0
     for k in range(1 << MOST):
         mask = ORDER[k]
@@ -636,17 +637,66 @@ def fewest(s, n, least, slide):
             else stick_set(s, n, mask, size, largest)
         )
         fill_after(s, n)
-        if (
-            solved
-            and cones_hold(s, n, mask, small / largest)
-            and others_open(s, n, mask, small)
-        ):
+        if solved and is_solution(s, n, mask, scale, largest):
             solutions += 1
             change = change_of_energy(s, n)
             if chosen < 0 or change < lowest - EQUAL * scale * scale:
                 chosen, lowest, size_found = mask, change, size
                 keep_best(s, n)
     return chosen, solutions
+
+
+@kernel
+def shared(s, n, least):
+    """Find impulses of contacts that share what they hold: by Gauss and Seidel's method, then by Newton's.
+
+    In and out are as in :func:`fewest`; the set is that of all that come to push.
+    """
+    largest, scale = largest_compliance(s, n), velocity_to_stop(s, n)
+    pace, small = 1.0 / largest, CLOSE_ENOUGH * scale
+    for i in range(n):
+        s.grip[i] = s.friction[i] if s.slid[i] else s.holds[i]
+        for k in range(3):
+            s.impulse[3 * i + k] = 0.0
+    relax(s, n, ROUNDING * scale)
+    mask = 0
+    for i in range(n):
+        if s.impulse[3 * i + 2] > SLIPS * scale * pace:
+            mask |= 1 << i
+        else:
+            for k in range(3):
+                s.impulse[3 * i + k] = 0.0
+    size = members(s, n, mask)
+    found = size >= max(least, 1) and newton(s, size, pace, small)
+    while found and slip_kinetically(s, size, SLIPS * scale):
+        found = newton(s, size, pace, small)
+    fill_after(s, n)
+    if not (found and is_solution(s, n, mask, scale, largest)):
+        return -1, 0
+    keep_best(s, n)
+    return mask, 1
+
+
+@kernel
+def is_solution(s, n, mask, scale, largest):
+    """Whether impulses of a set push and lie within the cones, and nothing outside of it approaches.
+
+    ``scale`` is the largest velocity to stop [m/s], and ``largest`` the largest compliance.
+    """
+    small = ROUNDING * scale
+    approached = (PRESSED if picks_wall(n, s) else ROUNDING) * scale
+    return cones_hold(s, n, mask, small / largest) and others_open(
+        s, n, mask, approached
+    )
+
+
+@kernel
+def velocity_to_stop(s, n):
+    """Largest velocity (or acceleration) that there is to stop [m/s]."""
+    scale = TINY
+    for i in range(3 * n):
+        scale = max(scale, abs(s.free[i]))
+    return scale
 
 
 @kernel

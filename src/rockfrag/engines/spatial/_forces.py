@@ -44,6 +44,7 @@ FLIGHT, PIVOT, HINGE, GENERAL, REST, SLIDER = 0, 1, 2, 3, 4, 5
 SLIP_FLOOR = 1e-4
 # part of the largest compliance that is added to all, so that redundant forces are the least ones [-]
 SOFTNESS = 1e-9
+LEAST_LOAD = 0.03  # part of all normal impulses that a contact counts with at least where they share [-]
 PASSES = 3  # in which what the softness shifts is removed (equation 15)
 # place of the gravity on ground at rest [m/s²] in s.field, behind the effective one and its rate
 GRAVITY = 6
@@ -98,6 +99,9 @@ CASE = np.dtype(
         *fields("soon", 3),
         # largest impulse of an impact along the ground beyond friction, for a unit of mass [m/s]
         *fields("beyond"),
+        # how soft contacts are along their surface, over the softness of all, and of each unknown
+        *fields("yields", MOST),
+        *fields("softness", 3 * MOST),
         # velocity after an impact below which a point that touches stays closed [m/s]
         *fields("close"),
         # force and moment of the ties, in the body, for a unit of mass [N/kg, N m/kg]
@@ -120,6 +124,15 @@ CASE = np.dtype(
     align=True,
 )
 """What an analysis changes in place; its record goes through all kernels."""
+
+
+@kernel
+def picks_wall(n, s):
+    """Whether one of the n contacts of the small system, s.which, is of a corner with a wall."""
+    found = False
+    for k in range(n):
+        found = found or s.which[k] >= solid.WALLS
+    return found
 
 
 @kernel
@@ -515,8 +528,43 @@ def stick_together(s, n, mask, soft):
 
     Unknowns are three of a contact that sticks, and the normal one of a contact that slides, with which its
     friction goes. They are solved for as those of soft contacts (``docs/space.md``, equation 15), ``soft`` the
-    softness. Returned is whether there is a solution.
+    softness. What several contacts hold together is shared anew, by what each is pressed with, where one would
+    bear more shear than that allows. Returned is whether there is a solution.
     """
+    for i in range(n):
+        s.yields[i] = 1.0
+    done = hold_softly(s, n, mask, soft)
+    if done and yields_by_load(s, n, mask):
+        done = hold_softly(s, n, mask, soft)
+    return done
+
+
+@kernel
+def yields_by_load(s, n, mask):
+    """Fill s.yields of a set by the normal impulses; return whether one that sticks bears too much shear.
+
+    The softness along the surface is as the square of the mean normal impulse over a contact's own: the sum of the
+    squares of what each uses of its friction is then the least.
+    """
+    total, size, beyond = 0.0, 0, False
+    for i in range(n):
+        if in_set(mask, i) and not s.given[i]:
+            normal = max(s.impulse[3 * i + 2], 0.0)
+            shear = norm(s.impulse[3 * i], s.impulse[3 * i + 1])
+            beyond = beyond or shear > s.holds[i] * normal
+            total += normal
+            size += 1
+    if not beyond or size < 2 or total <= 0.0:
+        return False
+    for i in range(n):
+        normal = max(s.impulse[3 * i + 2], LEAST_LOAD * total)
+        s.yields[i] = 1.0 if s.given[i] else (total / (size * normal)) ** 2
+    return True
+
+
+@kernel
+def hold_softly(s, n, mask, soft):
+    """Solve for the impulses of :func:`stick_together`, contacts as soft along their surface as s.yields says."""
     size = 0
     for j in range(n):
         if not in_set(mask, j):
@@ -536,15 +584,16 @@ def stick_together(s, n, mask, soft):
                     s.matrix[row, size] = value
                     s.right[row] = -s.free[3 * i + k]
                     row += 1
+            s.softness[size] = soft * (s.yields[j] if axis < 2 else 1.0)
             size += 1
     for i in range(size):
-        s.matrix[i, i] += soft
+        s.matrix[i, i] += s.softness[i]
         s.unknown[i] = 0.0
     done = factor(s.matrix, s.order, size)
     # what the softness shifts one more pass with it as a reference removes
     for _ in range(PASSES if done else 0):
         for i in range(size):
-            s.vector[i] = s.right[i] + soft * s.unknown[i]
+            s.vector[i] = s.right[i] + s.softness[i] * s.unknown[i]
         substitute(s.matrix, s.order, size, s.vector)
         for i in range(size):
             s.unknown[i] = s.vector[i]
@@ -624,6 +673,7 @@ def solve_general(body, y, rows, n, rubs, s):
     fill_directions(body, y, rows, n, s)
     for i in range(n):
         s.given[i], s.friction[i] = s.slides[i], 0.0
+        s.holds[i] = solid.static_of(body, s.closed[i])
         if rubs:
             s.friction[i] = solid.kinetic_of(body, s.closed[i])
     # a wall may hold what the ground holds already, which leaves nothing to divide by

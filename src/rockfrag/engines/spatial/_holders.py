@@ -42,10 +42,12 @@ def note_bond(body, y, tau, s):
 
 @kernel
 def note_forces(body, y, s):
-    """Keep the largest force of each wall and tie in the state y [N/kg]."""
+    """Keep the largest force of each wall and tie in the state y [N/kg]; jammed walls have none that is known."""
     rows = algebra.rotation(y)
     for i in range(body.constraints):
         if not body.ties[i]:
+            if s.jammed:
+                continue
             pressed = 0.0
             for k in range(s.count):
                 at = s.closed[k]

@@ -19,7 +19,6 @@ from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _contacts as contacts
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _limits as limits
-from rockfrag.engines.spatial import _problem as problem
 
 # hops of one end of an edge beside the other: speed above which they are followed [m/s]; part by which each is
 # slower than the one before, at least [-]; and what closing them may change of the body's angular velocity [rad/s]
@@ -27,16 +26,16 @@ FASTEST_HOP, SLOWING, CHATTER = 1e-2, 0.05, 1e-6
 
 
 @kernel
-def keep_slow_contacts(body, y, rows, gravity, n, found, s):
+def keep_slow_contacts(body, y, rows, gravity, n, found, closes, s):
     """Write the mode after an impact to ``s``: contacts that pushed, leave more slowly than s.close, or chatter.
 
-    In: the n contacts s.which with s.after, and the set ``found`` that pushed. What is kept though it would leave
-    is held, which changes the state y by little.
+    In: the n contacts s.which with s.after, the set ``found`` that pushed, and whether what chatters ``closes``.
+    What is kept though it would leave is held, which changes the state y by little.
     """
     count = 0
     slow = False
     hops = -1
-    if not problem.picks_wall(n, s):
+    if closes:
         hops = hopping(body, y, rows, gravity, n, found, s)
     for i in range(n):
         leaving = s.after[3 * i + 2]

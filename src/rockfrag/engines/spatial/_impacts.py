@@ -43,7 +43,7 @@ def impact(body, y, gravity, least, s):
     before = solid.centre_velocity(y)
     n = points.touching(body, y, rows, s)
     momentum = stick.fill_velocities(body, y, rows, n, s)
-    if problem.picks_wall(n, s):
+    if forces.picks_wall(n, s):
         impact_at_wall(body, y, rows, gravity, n, least, s)
         return
     problem.note_slips(body, n, s)
@@ -53,7 +53,13 @@ def impact(body, y, gravity, least, s):
     for i in range(n):
         push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
         forces.push_at(body, y, rows, s.which[i], push)
-    hops.keep_slow_contacts(body, y, rows, gravity, n, found, s)
+    pushed = (solid.centre_velocity(y), solid.omega_of(y))
+    hops.keep_slow_contacts(body, y, rows, gravity, n, found, True, s)
+    if beyond_friction(body, y, before) > BEYOND:
+        # what chatters would slip: it is followed
+        solid.set_velocity(y, pushed[0])
+        solid.set_spin(y, pushed[1])
+        hops.keep_slow_contacts(body, y, rows, gravity, n, found, False, s)
     witness(body, y, before, s)
 
 
@@ -82,7 +88,7 @@ def impact_at_wall(body, y, rows, gravity, n, least, s):
     if not is_solved(body, y, rows, n, found, solutions, s):
         return
     note_impulses(body, n, found, s)
-    hops.keep_slow_contacts(body, y, rows, gravity, n, found, s)
+    hops.keep_slow_contacts(body, y, rows, gravity, n, found, False, s)
 
 
 @kernel
@@ -171,12 +177,20 @@ def note_impulses(body, n, found, s):
 def witness(body, y, before, s):
     """Note, and count, the momentum that an impact would need beyond what friction can give [m/s].
 
-    ``before`` is the velocity of the centre of mass before; its change is the impulse of all contacts for a unit
-    of mass. Static friction bears so much of its normal part along the ground. The largest excess stays in
-    s.beyond, and one above BEYOND counts as a problem without a solution.
+    ``before`` is the velocity of the centre of mass before. The largest excess stays in s.beyond, and one above
+    BEYOND counts as a problem without a solution.
     """
-    east, north, up = solid.VELOCITY, solid.VELOCITY + 1, solid.VELOCITY + 2
-    shear = algebra.norm(y[east] - before[0], y[north] - before[1])
-    beyond = shear - body.static * (y[up] - before[2])
+    beyond = beyond_friction(body, y, before)
     s.beyond = max(s.beyond, beyond)
     s.counters[limits.UNSOLVED] += beyond > BEYOND
+
+
+@kernel
+def beyond_friction(body, y, before):
+    """Momentum along the ground, for a unit of mass, that no static friction bears beside that upwards [m/s].
+
+    The change of the velocity of the centre of mass, which was ``before``, is the impulse of all contacts.
+    """
+    after = solid.centre_velocity(y)
+    shear = algebra.norm(after[0] - before[0], after[1] - before[1])
+    return shear - body.static * (after[2] - before[2])

@@ -122,7 +122,7 @@ def solve_forces(body, y, rows, gravity, n, slow, s):
     """
     weight = forces.load_on(body, y, rows, gravity, s)
     moment = stick.fill_accelerations(body, y, rows, weight, n, s)
-    if not problem.picks_wall(n, s):
+    if not forces.picks_wall(n, s):
         return problem.solve(body, y, rows, n, 0, moment, s)
     found, solutions = -1, 0
     for _ in range(problem.TAKEN_IN):

@@ -27,15 +27,6 @@ TAKEN_IN, MISSED = 8, 1e-9
 
 
 @kernel
-def picks_wall(n, s):
-    """Whether one of the n contacts of the small system, s.which, is of a corner with a wall."""
-    found = False
-    for k in range(n):
-        found = found or s.which[k] >= solid.WALLS
-    return found
-
-
-@kernel
 def fill_edges(body, y, rows, which, n, s):
     """Fill s.edge[i, j], (n, n, 2), with the unit vectors from contact i to j of ``which`` along their surface.
 
@@ -109,7 +100,7 @@ def solve(body, y, rows, n, least, moment, s):
     Arguments are those of :func:`_stick.stick_alone_or_by_two`, which finds nearly all. What slides, regains its
     grip or is at a wall goes to the cones at once.
     """
-    plain = not picks_wall(n, s)
+    plain = not forces.picks_wall(n, s)
     for i in range(n):
         regains = s.slid[i] and s.friction[i] < s.holds[i]
         plain = plain and not (s.given[i] or regains)

@@ -32,6 +32,7 @@ from rockfrag.engines.spatial._forces import (
     tie_force,
     tie_margin,
 )
+from rockfrag.engines.spatial._relax import relax, stops
 
 # velocity away from its surface below which an open contact approaches it, and not by rounding alone [m/s]
 DOWN = -1e-10
@@ -42,6 +43,9 @@ BACKWARD = 1e-8  # slip against its own direction that is rounding [m/s]
 NEAR_FLAT = 1e-6  # tilt below which a rim that rolls goes on to roll [rad]
 # over the weight that a contact may pull, or shear beyond its cone, unseen [-]
 LEAST_FORCE = 1e-9
+SPREAD = (
+    1e-8  # acceleration, over gravity, to which forces spread anew hold what sticks
+)
 
 
 @kernel
@@ -290,6 +294,8 @@ def contacts_margin(body, y, rows, s):
     small = LEAST_FORCE * s.field[forces.GRAVITY]
     # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
     passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
+    if at_wall(s) and s.count >= 3 and not (s.jammed or bears_all(body, s)):
+        spread_load(body, s)
     least = (limits.NO_LIMIT, limits.NOTHING)
     for i in range(s.count):
         least = lesser(least, (s.lam[i, 2] + small, limits.OPENS))
@@ -304,6 +310,35 @@ def contacts_margin(body, y, rows, s):
             left = grip - norm(s.lam[i, 0], s.lam[i, 1]) + small
             least = lesser(least, (left, limits.LEAVES_CONE))
     return least
+
+
+@kernel
+def bears_all(body, s):
+    """Whether the forces s.lam push, and are within the cones of what sticks."""
+    holds = True
+    for i in range(s.count):
+        holds = holds and s.lam[i, 2] >= 0.0
+        if s.slides[i] != SLIDES and not solid.is_smooth(body, s.closed[i]):
+            limit = solid.static_of(body, s.closed[i]) * s.lam[i, 2]
+            holds = holds and norm(s.lam[i, 0], s.lam[i, 1]) <= limit
+    return holds
+
+
+@kernel
+def spread_load(body, s):
+    """Spread anew, if cones allow it, what contacts at a wall and on the ground hold together; fill s.lam.
+
+    The system is the one that :func:`_forces.solve_general` solved last, whose motion is the same however it is
+    spread.
+    """
+    for i in range(s.count):
+        s.grip[i] = solid.static_of(body, s.closed[i])
+    small = SPREAD * s.field[forces.GRAVITY]
+    if not (relax(s, s.count, small) and stops(s, s.count, small)):
+        return
+    for i in range(s.count):
+        for k in range(3):
+            s.lam[i, k] = s.impulse[3 * i + k]
 
 
 @kernel

@@ -7,7 +7,7 @@ In: :class:`rockfrag.engines.contract.Cases` of single bodies with a depth. Out:
 import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -22,7 +22,14 @@ from rockfrag.engines.contract import Case, Cases, Request
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _outcome as outcome
-from rockfrag.engines.spatial._body import ATTITUDE, BOND, FRICTION, PLACE, SPIN
+from rockfrag.engines.spatial._body import (
+    ATTITUDE,
+    BOND,
+    FRICTION,
+    HOLDERS,
+    PLACE,
+    SPIN,
+)
 from rockfrag.engines.spatial._forces import CASE
 from rockfrag.engines.spatial.body import (
     acting,
@@ -30,7 +37,7 @@ from rockfrag.engines.spatial.body import (
     perturbed,
     standing,
 )
-from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
+from rockfrag.outcomes.outcomes import Outcomes, columns, empty_outcomes
 from rockfrag.system.system import System
 
 if TYPE_CHECKING:
@@ -71,6 +78,10 @@ class SpatialOutcome:
     gained: float
     # largest impulse of an impact along the ground beyond the friction of that across it, for a unit of mass [m/s]
     beyond_friction: float
+    leaning: bool  # whether it rests beyond its balance, against a wall or in a tie
+    # of what holds it, for a unit of mass: hits, largest impulse [m/s], largest force [m/s²] and time of breaking
+    # [s], shape (HOLDERS, OF_HOLDER)
+    borne: Floats = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -87,6 +98,8 @@ class SpatialResponse:
     history: pd.DataFrame
     # of the base at first, from below the centre of mass, shape (n, 2) [m]
     outline: NDArray[np.float64]
+    # a row per wall, tie and bond, as those of outcomes; None where nothing holds it
+    constraints: pd.DataFrame | None = field(default=None, repr=False)
 
     @property
     def overturned(self) -> bool:
@@ -148,7 +161,7 @@ def run(cases: Cases) -> Outcomes:
             1.0 + scales * float(ground[:, 2].min()) / g
         )
         _write(result, (i, j), body, found)
-        _write_holding(result, (i, j), cases.systems[i], found)
+        _write_holding(result, (i, j), cases.systems[i], _borne(found.outs))
 
     with ThreadPoolExecutor(cases.threads) as pool:
         list(pool.map(run_pair, tasks))
@@ -202,7 +215,7 @@ def history(case: Case) -> SpatialResponse:
     )
     table = history_table(history, case.motion.dt, float(body["height"]))
     outline = np.array(body["points"][: body["count"], :2])
-    return SpatialResponse(found, table, outline)
+    return SpatialResponse(found, table, outline, _constraints(case.system, found))
 
 
 def run_case(
@@ -316,6 +329,8 @@ def _outcome(
         residual=float(out[outcome.ENERGY_BALANCE]),
         gained=float(out[outcome.GAINED]),
         beyond_friction=float(out[outcome.BEYOND]),
+        leaning=bool(out[outcome.LEANS]),
+        borne=_borne(out),
     )
 
 
@@ -402,7 +417,7 @@ def _write(
 
 
 def _write_holding(
-    result: Outcomes, case: tuple[int, int], system: System, found: Found
+    result: Outcomes, case: tuple[int, int], system: System, borne: Floats
 ) -> None:
     """Write what held a body had to bear under a motion, at all scales, into the outcomes of all."""
     if not (system.constraints or system.bonds):
@@ -412,10 +427,32 @@ def _write_holding(
         rows[len(system.constraints)] = BOND
     mass = system.bodies[0].mass
     for row, holder in rows.items():
-        first = outcome.HELD + outcome.OF_HOLDER * holder
-        of_holder = found.outs[:, first : first + outcome.OF_HOLDER]
-        hits, impact, force, breaks = of_holder.T
+        hits, impact, force, breaks = borne[:, holder].T
         result.hits[case][:, row] = hits
         result.largest_impulse[case][:, row] = mass * impact
         result.largest_force[case][:, row] = mass * force
         result.breaking_time[case][:, row] = breaks
+
+
+def _borne(outs: Floats) -> Floats:
+    """What holders had to bear, of rows of outcomes of shape (..., OUTCOME): shape (..., HOLDERS, OF_HOLDER)."""
+    size = HOLDERS * outcome.OF_HOLDER
+    of_holders = outs[..., outcome.HELD : outcome.HELD + size]
+    return of_holders.reshape(*outs.shape[:-1], HOLDERS, outcome.OF_HOLDER)
+
+
+def _constraints(system: System, found: SpatialOutcome) -> pd.DataFrame | None:
+    """Table of what held a body, as :class:`rockfrag.outcomes.response.Response` has it; None if nothing does."""
+    if not system.holding:
+        return None
+    result = empty_outcomes(
+        [system.names], np.ones((1, 1)), [ENGINE.name], holding=[system.holding]
+    )
+    _write_holding(result, (0, 0), system, found.borne[np.newaxis])
+    table = {
+        "constraint": np.arange(1, len(system.holding) + 1),
+        "name": list(system.holding),
+    }
+    for column in columns("constraints"):
+        table[column.title] = getattr(result, column.name)[0, 0, 0]
+    return pd.DataFrame(table)
