@@ -427,7 +427,7 @@ def test_what_space_cannot_hold_is_refused_in_a_sentence():
 
 @pytest.mark.parametrize("walls", [0, 1, 2])
 def test_friction_beside_walls_hardly_ever_leaves_nothing_that_goes_on(walls):
-    """Of 36 histories one at most has no force or impulse, and no wall bears more than the weight of what rocks."""
+    """Of 36 histories one at most lacks a force or impulse, and no wall bears more than the weight of the box."""
     beside = [Wall(BOX.width / 2 + 0.01, angle) for angle in (0.0, math.pi)[:walls]]
     without = 0
     for seed in range(40, 46):
