@@ -7,7 +7,7 @@ contact events. Theory: ``docs/rocking.md``, ``docs/derivation.md``.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
+from rockfrag.outcomes.outcomes import columns
 from rockfrag.system.support import BilinearIsolator
 from rockfrag.system.system import Start, System
 
@@ -327,6 +328,27 @@ def with_slips(
         modes=pd.Series(modes, dtype=object),
         slip=pd.Series(_tuples(slip), dtype=object),
     )
+
+
+def constraint_table(
+    names: Sequence[str], values: Mapping[str, NDArray[Any]]
+) -> pd.DataFrame:
+    """What each wall, tie, bond and isolator had to bear, with the columns of ``Response.constraints``.
+
+    Parameters
+    ----------
+    names : of what holds the bodies
+    values : of each column of outcomes about constraints, by its name, shape (n,): n is that of ``names`` at least
+
+    Returns
+    -------
+    pandas.DataFrame, a row a name.
+    """
+    count = len(names)
+    table = {"constraint": np.arange(1, count + 1), "name": list(names)}
+    for column in columns("constraints"):
+        table[column.title] = np.array(values[column.name][:count])
+    return pd.DataFrame(table)
 
 
 def energy_table(

@@ -27,7 +27,6 @@ from rockfrag.engines.steps import free_samples, step_count
 from rockfrag.outcomes import response as responses
 from rockfrag.outcomes.outcomes import (
     Outcomes,
-    columns,
     empty_outcomes,
     merge_outcomes,
 )
@@ -376,11 +375,9 @@ class ContactRun:
 
     def _constraints(self) -> pd.DataFrame:
         """Make the table of what holds the bodies: hits, forces [N], strokes [m] and times of breaking [s]."""
-        names, outcome = self.case.system.holding, self.work["outcome"]
-        table = {"constraint": np.arange(1, len(names) + 1), "name": list(names)}
-        for column in columns("constraints"):
-            table[column.title] = outcome[column.name][: len(names)].copy()
-        return pd.DataFrame(table)
+        return responses.constraint_table(
+            self.case.system.holding, self.work["outcome"]
+        )
 
     def _energies(self) -> pd.DataFrame:
         """Return the table of energies [J] over time: kinetic, potential, work, losses by contact, friction."""

@@ -36,6 +36,7 @@ from rockfrag.engines.spatial._forces import (
     stop_at,
 )
 from rockfrag.engines.spatial._relax import relax
+from rockfrag.engines.spatial._stick import speed_to_stop
 
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
 """Sets of four contacts as bits, the smallest first."""
@@ -624,7 +625,7 @@ def fewest(s, n, least, slide):
     Returned are the set, as bits, -1 if there is none, and how many sets of that size there are; s.best has its
     impulses. Sets are tried by size, so that larger ones are left out as soon as one is found.
     """
-    largest, scale = largest_compliance(s, n), velocity_to_stop(s, n)
+    largest, scale = largest_compliance(s, n), speed_to_stop(s, n)
     chosen, solutions, size_found, lowest = -1, 0, MOST, 0.0
     for k in range(1 << MOST):
         mask = ORDER[k]
@@ -652,7 +653,7 @@ def shared(s, n, least):
 
     In and out are as in :func:`fewest`; the set is that of all that come to push.
     """
-    largest, scale = largest_compliance(s, n), velocity_to_stop(s, n)
+    largest, scale = largest_compliance(s, n), speed_to_stop(s, n)
     pace, small = 1.0 / largest, CLOSE_ENOUGH * scale
     for i in range(n):
         s.grip[i] = s.friction[i] if s.slid[i] else s.holds[i]
@@ -688,15 +689,6 @@ def is_solution(s, n, mask, scale, largest):
     return cones_hold(s, n, mask, small / largest) and others_open(
         s, n, mask, approached
     )
-
-
-@kernel
-def velocity_to_stop(s, n):
-    """Largest velocity (or acceleration) that there is to stop [m/s]."""
-    scale = TINY
-    for i in range(3 * n):
-        scale = max(scale, abs(s.free[i]))
-    return scale
 
 
 @kernel

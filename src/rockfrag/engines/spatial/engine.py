@@ -38,6 +38,7 @@ from rockfrag.engines.spatial.body import (
     standing,
 )
 from rockfrag.outcomes.outcomes import Outcomes, columns, empty_outcomes
+from rockfrag.outcomes.response import constraint_table
 from rockfrag.system.system import System
 
 if TYPE_CHECKING:
@@ -449,10 +450,8 @@ def _constraints(system: System, found: SpatialOutcome) -> pd.DataFrame | None:
         [system.names], np.ones((1, 1)), [ENGINE.name], holding=[system.holding]
     )
     _write_holding(result, (0, 0), system, found.borne[np.newaxis])
-    table = {
-        "constraint": np.arange(1, len(system.holding) + 1),
-        "name": list(system.holding),
+    values = {
+        column.name: getattr(result, column.name)[0, 0, 0]
+        for column in columns("constraints")
     }
-    for column in columns("constraints"):
-        table[column.title] = getattr(result, column.name)[0, 0, 0]
-    return pd.DataFrame(table)
+    return constraint_table(system.holding, values)
