@@ -39,7 +39,7 @@ from rockfrag.web.space_entry import SPACE, describe_solid, integrate_solid
 
 TRIPLE = "wasm32-unknown-unknown"
 FEATURES = "+bulk-memory,+sign-ext,+nontrapping-fptoint"
-SPACE_INLINING, PLANE_INLINING = 18, 140
+SPACE_INLINING, PLANE_INLINING = 10, 140
 """Size of what LLVM copies in a body in space, and in a plane: by itself modules are larger than they may be."""
 MEMORY_PAGES = 2
 """Pages of 64 KiB that the module starts with; the page asks for more as histories need them."""

@@ -533,9 +533,11 @@ def stick_together(s, n, mask, soft):
     """
     for i in range(n):
         s.yields[i] = 1.0
-    done = hold_softly(s, n, mask, soft)
-    if done and yields_by_load(s, n, mask):
+    done = False
+    for _ in range(2):
         done = hold_softly(s, n, mask, soft)
+        if not (done and yields_by_load(s, n, mask)):
+            break
     return done
 
 

@@ -54,12 +54,13 @@ def impact(body, y, gravity, least, s):
         push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
         forces.push_at(body, y, rows, s.which[i], push)
     pushed = (solid.centre_velocity(y), solid.omega_of(y))
-    hops.keep_slow_contacts(body, y, rows, gravity, n, found, True, s)
-    if beyond_friction(body, y, before) > BEYOND:
-        # what chatters would slip: it is followed
+    # what chatters is closed, but followed where it would slip
+    for closes in (True, False):
         solid.set_velocity(y, pushed[0])
         solid.set_spin(y, pushed[1])
-        hops.keep_slow_contacts(body, y, rows, gravity, n, found, False, s)
+        hops.keep_slow_contacts(body, y, rows, gravity, n, found, closes, s)
+        if not beyond_friction(body, y, before) > BEYOND:
+            break
     witness(body, y, before, s)
 
 
