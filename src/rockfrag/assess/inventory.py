@@ -600,12 +600,12 @@ def fares_of(found: Assessment) -> Value:
     if found.does_not_move:
         return finding(Text.DOES_NOT_MOVE)
     likelihood = finding(likelihood_of(found.fraction.value).value)
-    about: dict[str, Value] = {"likelihood": likelihood}
-    about["chance"] = estimate_of(found.fraction)
-    part = many_lean(found)
-    if part is not None:
-        return finding(Text.FARES_LEANING, part=percent(part), **about)
-    return finding(Text.FARES_LIKELY, **about)
+    chance = estimate_of(found.fraction)
+    leans = many_lean(found)
+    if leans is None:
+        return finding(Text.FARES_LIKELY, likelihood=likelihood, chance=chance)
+    part = percent(leans)
+    return finding(Text.FARES_LEANING, likelihood=likelihood, chance=chance, part=part)
 
 
 def _half(found: Assessment) -> Finding:

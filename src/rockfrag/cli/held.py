@@ -86,8 +86,10 @@ def held(options: argparse.Namespace, system: "System") -> "System":
 
     Returns
     -------
-    The system.
+    The system; the same one where nothing holds it.
     """
+    if not is_held(options):
+        return system
     from rockfrag.system import hold, mounts
 
     constraints: list[Any] = []
