@@ -35,7 +35,7 @@ from rockfrag.engines.spatial._forces import (
     stick_together,
     stop_at,
 )
-from rockfrag.engines.spatial._relax import relax
+from rockfrag.engines.spatial._relax import relax, velocity_after
 from rockfrag.engines.spatial._stick import speed_to_stop
 
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
@@ -77,11 +77,8 @@ RAYS /= np.sqrt((RAYS * RAYS).sum(axis=1, keepdims=True))
 @kernel
 def fill_after(s, n):
     """Fill s.after with the velocities of n contacts after the impulses, u = W P + b."""
-    for i in range(3 * n):
-        value = s.free[i]
-        for j in range(3 * n):
-            value += s.delassus[i, j] * s.impulse[j]
-        s.after[i] = value
+    for row in range(3 * n):
+        s.after[row] = velocity_after(s, n, row)
 
 
 @kernel
@@ -406,6 +403,16 @@ def slide_set(s, n, mask, size, largest, scale):
             break
         start_sliding(s, n, mask, RIGHT_ANGLE * k)
         found = newton(s, size, pace, CLOSE_ENOUGH * scale)
+    return found and ends_kinetically(s, size, pace, scale)
+
+
+@kernel
+def ends_kinetically(s, size, pace, scale):
+    """Solve for a set anew while more of its contacts come to slide; whether a solution was found each time.
+
+    ``scale`` is the largest velocity to stop [m/s], and ``pace`` is as in :func:`newton`.
+    """
+    found = True
     while found and slip_kinetically(s, size, SLIPS * scale):
         found = newton(s, size, pace, CLOSE_ENOUGH * scale)
     return found
@@ -654,7 +661,7 @@ def shared(s, n, least):
     In and out are as in :func:`fewest`; the set is that of all that come to push.
     """
     largest, scale = largest_compliance(s, n), speed_to_stop(s, n)
-    pace, small = 1.0 / largest, CLOSE_ENOUGH * scale
+    pace = 1.0 / largest
     for i in range(n):
         s.grip[i] = s.friction[i] if s.slid[i] else s.holds[i]
         for k in range(3):
@@ -668,9 +675,8 @@ def shared(s, n, least):
             for k in range(3):
                 s.impulse[3 * i + k] = 0.0
     size = members(s, n, mask)
-    found = size >= max(least, 1) and newton(s, size, pace, small)
-    while found and slip_kinetically(s, size, SLIPS * scale):
-        found = newton(s, size, pace, small)
+    found = size >= max(least, 1) and newton(s, size, pace, CLOSE_ENOUGH * scale)
+    found = found and ends_kinetically(s, size, pace, scale)
     fill_after(s, n)
     if not (found and is_solution(s, n, mask, scale, largest)):
         return -1, 0

@@ -22,6 +22,7 @@ from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _hinge as hinge
 from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _pivot as pivot
+from rockfrag.engines.spatial._cone import cones_hold
 from rockfrag.engines.spatial._forces import (
     SLIDES,
     STAGES,
@@ -43,9 +44,8 @@ BACKWARD = 1e-8  # slip against its own direction that is rounding [m/s]
 NEAR_FLAT = 1e-6  # tilt below which a rim that rolls goes on to roll [rad]
 # over the weight that a contact may pull, or shear beyond its cone, unseen [-]
 LEAST_FORCE = 1e-9
-SPREAD = (
-    1e-8  # acceleration, over gravity, to which forces spread anew hold what sticks
-)
+# acceleration, over gravity, to which forces that are spread anew hold what sticks [-]
+SPREAD = 1e-8
 
 
 @kernel
@@ -294,8 +294,8 @@ def contacts_margin(body, y, rows, s):
     small = LEAST_FORCE * s.field[forces.GRAVITY]
     # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
     passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
-    if at_wall(s) and s.count >= 3 and not (s.jammed or bears_all(body, s)):
-        spread_load(body, s)
+    if at_wall(s) and s.count >= 3 and not s.jammed:
+        spread_load(s)
     least = (limits.NO_LIMIT, limits.NOTHING)
     for i in range(s.count):
         least = lesser(least, (s.lam[i, 2] + small, limits.OPENS))
@@ -313,32 +313,21 @@ def contacts_margin(body, y, rows, s):
 
 
 @kernel
-def bears_all(body, s):
-    """Whether the forces s.lam push, and are within the cones of what sticks."""
-    holds = True
-    for i in range(s.count):
-        holds = holds and s.lam[i, 2] >= 0.0
-        if s.slides[i] != SLIDES and not solid.is_smooth(body, s.closed[i]):
-            limit = solid.static_of(body, s.closed[i]) * s.lam[i, 2]
-            holds = holds and norm(s.lam[i, 0], s.lam[i, 1]) <= limit
-    return holds
-
-
-@kernel
-def spread_load(body, s):
-    """Spread anew, if cones allow it, what contacts at a wall and on the ground hold together; fill s.lam.
+def spread_load(s):
+    """Spread anew what closed contacts hold together, if that lies outside a cone and need not; fill s.lam.
 
     The system is the one that :func:`_forces.solve_general` solved last, whose motion is the same however it is
     spread.
     """
-    for i in range(s.count):
-        s.grip[i] = solid.static_of(body, s.closed[i])
-    small = SPREAD * s.field[forces.GRAVITY]
-    if not (relax(s, s.count, small) and stops(s, s.count, small)):
+    n, small = s.count, SPREAD * s.field[forces.GRAVITY]
+    for i in range(n):
+        s.grip[i] = s.holds[i]
+    if cones_hold(s, n, (1 << n) - 1, 0.0):
         return
-    for i in range(s.count):
-        for k in range(3):
-            s.lam[i, k] = s.impulse[3 * i + k]
+    if relax(s, n, small) and stops(s, n, small):
+        for i in range(n):
+            for k in range(3):
+                s.lam[i, k] = s.impulse[3 * i + k]
 
 
 @kernel
