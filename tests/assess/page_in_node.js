@@ -65,12 +65,15 @@ begin({ data, modules, samples: bytes(data.packed) }).then(() => {
         const outcomes = Object.fromEntries(
           ["free", "held"].map((name, i) => {
             const run = planOf(task)[last - 1 + i];
-            const { motions, overturned } = tools.made.joined(
+            const { motions, overturned, leaning } = tools.made.joined(
               task.request,
               run,
               parts[i],
             );
-            return [name, { motions, overturned: [...overturned] }];
+            return [
+              name,
+              { motions, overturned: [...overturned], leaning: [...leaning] },
+            ];
           }),
         );
         const found = TASKS.tried({ ...task, parts, asked, answered: answer });

@@ -6,9 +6,10 @@ from dataclasses import replace
 import pytest
 
 from rockfrag import Block, Column, InputError, Stack
+from rockfrag.assess.standing.holders import Putty
 from rockfrag.system import System, as_system, hold, mounts
 from rockfrag.system.body import Circle, Polygon, interval_of
-from rockfrag.system.system import cylinder, standing_points
+from rockfrag.system.system import cylinder, standing_points, with_bodies
 
 BLOCK = Block(0.3, 1.2, 100.0)
 STANDING = {
@@ -78,9 +79,25 @@ def test_what_holds_an_object_meets_its_upper_corners_and_ends_beside_all_that_s
         assert (wall.height, wall.friction) == (math.inf, None)
     putty = mounts.putty_under(system, 80.0)
     assert (putty.tension, putty.shear) == (80.0, 80.0)
-    assert putty.spread == pytest.approx((0.15, 0.15))
+    ends = edges(system)[-2:]
+    rests = min(right for _, right in ends) - max(left for left, _ in ends)
+    assert putty.spread == pytest.approx((rests / 2, rests / 2))
     assert mounts.putty_under(system, 80.0, 30.0, 0.1).spread == (0.1, 0.1)
     assert mounts.putty_under(system, 80.0, 30.0, 0.1).shear == 30.0
+
+
+def test_putty_lies_where_a_base_rests_on_what_is_under_it():
+    """Pads beyond the edge of a narrower pedestal had arms that were too long."""
+    wide, pedestal = Block(0.6, 1.0, 80.0), Block(0.3, 0.5, 60.0)
+    system = as_system(Stack(pedestal, wide, offset=0.04))
+    # its middle is 4 cm aside, but it is wider than the pedestal on both sides
+    assert mounts.putty_under(system, 80.0).pads == pytest.approx((0.15, 0.15))
+    assert Putty().on(system).contacts[1].bond.pads[0] == pytest.approx(0.12)
+    with pytest.raises(InputError, match=r"pads lie outside.*give 0.15 m at most"):
+        hold(system, bonds=mounts.putty_under(system, 80.0, spread=0.2))
+    held = hold(system, bonds=mounts.putty_under(system, 80.0))
+    narrower = with_bodies(held, as_system(Stack(Block(0.26, 0.5, 60.0), wide)).bodies)
+    assert narrower.contacts[1].bond.pads[0] == pytest.approx(0.13)
 
 
 def test_putty_of_a_body_in_space_lies_under_its_base_both_ways():

@@ -12,7 +12,7 @@ from rockfrag.system.body import Circle, Interval, Outline
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.contact import Friction
-from rockfrag.system.system import System, corners
+from rockfrag.system.system import System, bearing, corners
 
 CORD = 1.0  # length of a cord, whose end is level with the top of the object [m]
 BRACKET = 0.1  # length of a bracket where no wall is near [m]
@@ -138,17 +138,16 @@ def putty_under(
     system, tension : the system, and the tensile capacity of all pads [N]
     shear : their capacity in shear [N]; None: the same
     spread
-        Half the distance of the pads [m]; None: they lie at the ends of the base, in space at its corners or
-        within it (:func:`pads_under`). Across the plane of x they lie no further out than these.
+        Half the distance of the pads [m]; None: they lie at the ends of what of the base lies on what is under it,
+        in space at its corners or within it (:func:`pads_under`). Across the plane of x they lie no further out.
 
     Returns
     -------
     The bond.
     """
-    body = system.bodies[-1]
-    along, across = pads_under(body.base, 1.0)
+    along, across = pads_under(bearing(system, system.count - 1), 1.0)
     if spread is not None:
-        along, across = spread, spread if body.planar else min(spread, across)
+        along, across = spread, spread if system.planar else min(spread, across)
     return Bond(tension, tension if shear is None else shear, (along, across))
 
 

@@ -13,7 +13,15 @@ from rockfrag.base.elementary import sin_cos
 from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import shown
 from rockfrag.system import geometry
-from rockfrag.system.body import Circle, Polygon, RigidBody, Vector3, interval_of
+from rockfrag.system.body import (
+    Circle,
+    Interval,
+    Outline,
+    Polygon,
+    RigidBody,
+    Vector3,
+    interval_of,
+)
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Constraint, Tie, Wall
 from rockfrag.system.contact import Contact, Friction
@@ -93,7 +101,7 @@ class System:
         for constraint in self.constraints:
             _check_constraint(constraint, self)
         for k, bond in self.bonds:
-            _check_bond(bond, self.bodies[k])
+            _check_bond(bond, self, k)
         if not (self.support is None or isinstance(self.support, Support)):
             raise InputError(
                 f"System: support: expected an isolator, got {shown(self.support)}."
@@ -250,18 +258,28 @@ def _check_constraint(constraint: object, system: System) -> None:
         )
 
 
-def _check_bond(bond: Bond, body: RigidBody) -> None:
-    """Refuse a bond whose pads lie outside the base of the body that stands on it."""
-    room, (x, y) = bond.room_under(body.base), bond.pads
+def _check_bond(bond: Bond, system: System, k: int) -> None:
+    """Refuse a bond whose pads lie outside what of body k's base lies on what is under it."""
+    room, (x, y) = bond.room_under(bearing(system, k)), bond.pads
     if room >= 1 - 1e-9:
         return
-    if body.planar:
+    if system.planar:
         said = f"{x:g} m to both sides of its middle; give {room * x:.6g} m at most"
     else:
         said = f"at ± ({x:g}, {y:g}) m; ({room * x:.6g}, {room * y:.6g}) m would be at its edge"
     raise InputError(
         f"Bond: spread: the pads lie outside the base that stands on them, {said}."
     )
+
+
+def bearing(system: System, k: int) -> Outline:
+    """What of the base of body k lies on what is under it; of a body in space the whole base."""
+    body = system.bodies[k]
+    if not k or not system.planar:
+        return body.base
+    (low, high), (left, right) = body.ends[0], system.bodies[k - 1].ends[1]
+    aside = system.contacts[k].offset[0]
+    return Interval(max(low, left - aside), min(high, right - aside))
 
 
 def reach_at(system: System, wall: Wall, turned: float = 0.0) -> float:
@@ -306,8 +324,10 @@ def with_bodies(
     """
     free = replace(system.free(), bodies=tuple(bodies))
     contacts = tuple(
-        replace(contact, bond=contact.bond and contact.bond.kept_under(body.base))
-        for contact, body in zip(system.contacts, bodies, strict=True)
+        replace(
+            contact, bond=contact.bond and contact.bond.kept_under(bearing(free, k))
+        )
+        for k, contact in enumerate(system.contacts)
     )
 
     def beside(constraint: Constraint) -> Constraint:
@@ -553,12 +573,10 @@ def arms_above(system: System, k: int) -> tuple[tuple[float, float], ...]:
     """Vectors from both ends of contact k, left and right, to the common centre of all on it, (x, z) [m]."""
     x, z = common_centre(system, k)
     bases = _bases(system)
-    angle, origin, body = bases[k]
-    low, high = body.ends[0]
-    if k:
-        face, offset = bases[k - 1][2].ends[1], system.contacts[k].offset[0]
-        low, high = max(low, face.left - offset), min(high, face.right - offset)
-    turns = [geometry.turned(end, 0.0, angle) for end in (low, high)]
+    angle, origin, _ = bases[k]
+    base = bearing(system, k)
+    assert isinstance(base, Interval)
+    turns = [geometry.turned(end, 0.0, angle) for end in base]
     return tuple((x - (origin[0] + dx), z - (origin[1] + dy)) for dx, dy in turns)
 
 

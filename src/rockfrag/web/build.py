@@ -123,7 +123,7 @@ def build_space() -> bytes:
         "columns": outcome.COLUMNS, "outcome": outcome.OUTCOME, "most": MOST_VERTICES,
         "sticks": NEVER_SLIDES, "fell": outcome.FELL, "certain": outcome.CERTAIN_TIME,
         "azimuth": outcome.FALL_AZIMUTH, "peak": outcome.PEAK_RATIO, "tilt": outcome.PEAK_TILT,
-        "turned": outcome.TURN, "walk": outcome.WALK_X, "held": outcome.HELD, "bond": BOND,
+        "leans": outcome.LEANS, "turned": outcome.TURN, "walk": outcome.WALK_X, "held": outcome.HELD, "bond": BOND,
     }  # fmt: skip
     return module_of(
         entries, {"call": SPACE}, constants, fused=None, inlining=SPACE_INLINING
@@ -140,8 +140,8 @@ def build_plane() -> bytes:
         "shake": (plane.shake_held, shaken),
     }
     constants = {
-        "gravity": GRAVITY, "fell": plane.FELL, "rocked": plane.ROCKED, "loose": plane.LOOSE,
-        "force": plane.FORCE, "stroke": plane.STROKE,
+        "gravity": GRAVITY, "fell": plane.FELL, "rocked": plane.ROCKED, "leans": plane.LEANS,
+        "loose": plane.LOOSE, "force": plane.FORCE, "stroke": plane.STROKE,
     }  # fmt: skip
     records = {
         "call": plane.HELD,

@@ -15,7 +15,7 @@ async function rockfragPlane(bytes) {
     await rockfragModule(bytes);
   const { fields } = layout.call;
   const { constants } = layout;
-  const COLUMNS = ["fell", "rocked", "loose", "force", "stroke"];
+  const COLUMNS = ["fell", "rocked", "leans", "loose", "force", "stroke"];
   // of what is not there
   const NOTHING = {
     friction: NaN,

@@ -53,8 +53,9 @@ HELD = np.dtype(
 )  # fmt: skip
 """What a page and the module hand to each other."""
 
-FELL, ROCKED, LOOSE, FORCE, STROKE = range(5)
-"""Columns of outcomes: whether it fell, rocked, and slid or left the ground; largest force [N] and stroke [m]."""
+FELL, ROCKED, LEANS, LOOSE, FORCE, STROKE = range(6)
+"""Columns of outcomes: whether it fell, rocked, leans at the end, and slid or left the ground; then the largest
+force [N] and stroke [m]."""
 
 compile_for_kernels(_describe)
 _integrate = kernel(integrate.py_func)
@@ -236,7 +237,7 @@ def shake_held(call, samples, scales, found, history, contact_events):
     call : record HELD
     samples : of the ground [m/s²], shape (n,)
     scales : factors, shape (scales,)
-    found : outcomes, shape (scales, 5)
+    found : outcomes, shape (scales, 6)
     history, contact_events : what is kept of each, which is nothing, shape (0,)
     """
     substeps = max(1, math.ceil(call.fastest * call.dt / STEP - 1e-9))
@@ -255,6 +256,7 @@ def _note_outcome(call, found):
     first = p.is_supported
     found[:] = 0.0
     found[FELL] = 1.0 if out.overturned_body > 0 else 0.0
+    found[LEANS] = float(out.leaning)
     loose = out.paradoxes > 0
     for k in range(first, p.count):
         turned = out.overturned_body == k + 1 or out.peak_rotation[k] > 0

@@ -152,6 +152,7 @@ async function rockfragSpace(bytes) {
     while (done < rows && !Number.isNaN(table[done * columns])) done++;
     return {
       overturned: fell,
+      leans: out[constants.leans] > 0,
       certainTime: out[constants.certain],
       fallDirection: fell ? out[constants.azimuth] : NaN,
       peak: fell ? Infinity : out[constants.peak],

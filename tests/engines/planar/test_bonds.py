@@ -1,12 +1,14 @@
 """Bonds: the exact instant at which they break, and what they are with no strength and with any."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rockfrag import Block, Stack
-from rockfrag.system import Bond, as_system, hold
+from rockfrag.system import Bond, Contact, System, as_system, hold
+from rockfrag.system.body import Interval
 
 from ...simulation.reference_bodies import random_motion
 from .cases import DT, G, run
@@ -40,6 +42,22 @@ def test_a_bond_breaks_where_its_pads_are_overloaded(
     assert breaking(Bond(tension, STRONG, spread), up) == pytest.approx(
         expected, rel=1e-10
     )
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.1])
+def test_pads_of_what_is_wider_than_its_pedestal_lie_around_the_middle_of_what_it_stands_on(
+    aside: float,
+) -> None:
+    """As under a base as wide as the face below, with the centre of gravity ``aside`` of its middle."""
+    half, wide = 0.1, Block(6 * B, 2 * H, M)
+    foot, body = as_system(Stack(Block(2.0, 0.2, 900.0), wide, offset=aside)).bodies
+    narrow = replace(foot, face=Interval(-half, half))
+    contacts = Contact(), Contact(offset=(aside, 0.0))
+    system = hold(System((narrow, body), contacts), bonds=Bond(200.0, STRONG, half))
+    (row,) = run(system, RAMP, 0.1, friction=0.9).constraints.itertuples()
+    # towards the left it is lifted at the right
+    expected = (half * (G + 200.0 / M) + aside * G) / H
+    assert RISE * row.breaking_time_s == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_bond_breaks_by_shear_at_friction_and_its_own() -> None:

@@ -161,13 +161,14 @@ const answer = (data, core) => {
   function joinedOfTrial(request, run, parts) {
     const levels = levelsOf(request, run);
     const found = { levels, motions: holders.motionsOf(request, run) };
-    for (const name of ["overturned", "rocked", "allowed"])
+    const tables = ["overturned", "rocked", "leaning", "allowed"];
+    for (const name of tables)
       found[name] = new Uint8Array(levels.length * data.earthquakes.length);
     found.lifting = new Float64Array(data.earthquakes.length).fill(Infinity);
     const { values } = tableOf(request);
     for (const part of parts)
       part.places.forEach((m, i) => {
-        for (const name of ["overturned", "rocked", "allowed"])
+        for (const name of tables)
           found[name].set(
             part[name].subarray(i * levels.length, (i + 1) * levels.length),
             m * levels.length,
@@ -326,11 +327,17 @@ const answer = (data, core) => {
   function changed(request, outcomes, { level, site, shifts, rates }) {
     const hazard = hazardOf(request);
     const atSite = site ? { ...outcomes, site } : outcomes;
-    const meanOf = (target) => judge.meanOf(target, shifts, rates, atSite);
-    return {
-      fraction: meanOf(judge.fractionTarget(level)),
+    const meanOf = (target, of = atSite) => judge.meanOf(target, shifts, rates, of);
+    const target = judge.fractionTarget(level);
+    const fraction = meanOf(target);
+    const found = {
+      fraction,
       probability: hazard && meanOf(judge.riskTarget(hazard, 50)),
     };
+    const { leaning } = outcomes;
+    if (!leaning) return found;
+    const overturned = atSite.overturned.map((fell, k) => fell | leaning[k]);
+    return { ...found, leans: meanOf(target, { ...atSite, overturned }) - fraction };
   }
   // the way in which it stands
   const ownOf = ({ pedestal }) => (pedestal ? "on_its_pedestal" : "on_the_floor");

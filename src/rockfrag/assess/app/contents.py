@@ -270,7 +270,7 @@ def _constants() -> dict[str, Any]:
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
-        **_of(findings, "MOST_SOURCES", "MOST_CHANGES"),
+        **_of(findings, "MOST_SOURCES", "MOST_CHANGES", "MANY_LEAN"),
         **_of(choices, "FEWEST_EARTHQUAKES"),
         **_of(request, "ACCEPTED_AT_A_LEVEL", "ACCEPTED_IN_FIFTY_YEARS"),
         "VARIANTS": {

@@ -34,10 +34,10 @@ const holding = (data, core, spatial) => {
       return { plate, dish_friction: 0, stroke, ...springs };
     });
   const IN_PLANE = {
-    putty: (bears, { statue: { width } }) => ({
+    putty: (bears, { statue: { width }, pedestal }) => ({
       bond_tension: bears,
       bond_shear: bears,
-      bond_spread: core.call("pads_across", width),
+      bond_spread: core.call("pads_across", Math.min(width, pedestal?.width ?? width)),
     }),
     bracket: (bears, body) => fastened("bracket", bears, body),
     cord: (bears, body) => fastened("cord", bears, body),
@@ -111,6 +111,7 @@ const holding = (data, core, spatial) => {
         allowed: own.allowed,
         overturned: Uint8Array.from(found.fell),
         rocked: Uint8Array.from(found.rocked),
+        leaning: Uint8Array.from(found.leans),
         // of what is held only simulation says
         lifting: Float64Array.from(places, (m) =>
           holders.length ? Infinity : lifting(m, shaken),
@@ -139,7 +140,7 @@ const holding = (data, core, spatial) => {
       const factors = factorsOf(own, shaking);
       const pure = () => {
         const { overturned, rocked } = ensemble.count(free, shaking, factors);
-        return { fell: overturned, rocked };
+        return { fell: overturned, rocked, leans: new Uint8Array(rocked.length) };
       };
       if (!holders.length) return pure();
       const found = plane.count(plane.bodyOf(held), shaking, factors);
@@ -147,7 +148,11 @@ const holding = (data, core, spatial) => {
       const other = pure();
       const either = (name) =>
         found[name].map((value, k) => (found.loose[k] ? value : other[name][k]));
-      return { fell: either("fell"), rocked: either("rocked") };
+      return {
+        fell: either("fell"),
+        rocked: either("rocked"),
+        leans: either("leans"),
+      };
     }
     const lifting = (m, shaken) =>
       core.call("lifting_in_plane", free.uplift, shaken(m).peak);
@@ -159,7 +164,7 @@ const holding = (data, core, spatial) => {
     const pairOf = (m, shaken) => spatial.pairOf(spatial.recordOf[m], shaken);
     function countOf(places, shaken, { own: { levels }, scalesOf, factorsOf }) {
       const each = levels.length;
-      const [fell, rocked, force] = [0, 1, 2].map(
+      const [fell, rocked, leans, force] = [0, 1, 2, 3].map(
         () => new Float64Array(places.length * each),
       );
       places.forEach((m, i) => {
@@ -167,7 +172,7 @@ const holding = (data, core, spatial) => {
         const before = places.findIndex((p) => spatial.recordOf[p].first === first);
         if (before < i) {
           // the record's other component, which was with it
-          for (const table of [fell, rocked, force])
+          for (const table of [fell, rocked, leans, force])
             table.copyWithin(i * each, before * each, (before + 1) * each);
           return;
         }
@@ -183,10 +188,11 @@ const holding = (data, core, spatial) => {
           });
           fell[i * each + k] = out.overturned ? 1 : 0;
           rocked[i * each + k] = out.peak > 0 ? 1 : 0;
+          leans[i * each + k] = out.leans ? 1 : 0;
           force[i * each + k] = out.force * solid.mass;
         });
       });
-      return { fell, rocked, force };
+      return { fell, rocked, leans, force };
     }
     const lifting = (m, shaken) => spatial.liftingInSpace(body, pairOf(m, shaken));
     return { countOf, lifting };

@@ -686,7 +686,7 @@
     const option = [...standing(there), `${OPTIONS[kind]} ${asked.bears}N`].join(" ");
     return [say("tried_in_plane", { option })];
   }
-  function compare({ fraction, probability }, after, stands = say("before")) {
+  function compare({ fraction, probability, leans = 0 }, after, stands = say("before")) {
     computed("helping");
     find("before").replaceChildren(...bound(stands));
     find("compared").classList.remove("stale");
@@ -695,6 +695,9 @@
       ["topples_column", valueOf(fraction), after?.fraction],
       ["risk_column", valueOf(probability), after?.probability],
     ];
+    // what stands at no wall and in no tie never leans
+    if (Math.max(leans, after?.leans) > data.constants.MANY_LEAN)
+      rows.push(["leans_column", leans, after.leans]);
     find("compared").replaceChildren(
       ...rows.map(([title, before, now]) =>
         make(

@@ -47,7 +47,7 @@ from rockfrag.system.support import (
     SlidingPendulum,
     Support,
 )
-from rockfrag.system.system import System, hold
+from rockfrag.system.system import System, bearing, hold
 from rockfrag.words.findings import Finding, Value, finding, three, two
 
 
@@ -114,7 +114,7 @@ class Putty(Holder):
 
     def on(self, system: System) -> System:
         """Bond the uppermost body to what it stands on."""
-        spread = pads_of(system.bodies[-1].base)
+        spread = pads_of(bearing(system, system.count - 1))
         return hold(system, bonds=Bond(self.tension, self.tension, spread))
 
     def called(self) -> Finding:
