@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag.base.errors import InputError
-from rockfrag_thesis.floor_order import HYPOTHESES, floor_margins
+from rockfrag_thesis.floor_order import HYPOTHESES, floor_margins, margins_table
+from rockfrag_thesis.hypotheses.evidence import THESIS_BODIES
 from rockfrag_thesis.hypotheses.floors import FLOORS
 from rockfrag_thesis.sections.building import floor_amplitudes
 from rockfrag_thesis.sections.floor_order import floor_hypotheses, floor_order
@@ -73,6 +74,17 @@ def test_tables_without_all_floors_or_pairs_are_refused():
         floor_margins(table[table["floor"] != "F5"])
     with pytest.raises(InputError, match="with and without pedestal"):
         floor_margins(table[table["pedestal"] == "NP"])
+
+
+def test_other_buildings_are_compared_for_objects_of_ones_own():
+    """They were taken for the thesis's, whose slenderness alone was known."""
+    names = {"T1": "bust", "T2": "vase", "T3": "column"}
+    own = {names[name]: body for name, body in THESIS_BODIES.items() if name in names}
+    about = {"axis": "reference", "value": 0.0, "label": "reference", "credible": True}
+    tests = table_of().assign(**about, definition="laboratory")
+    tests["object"] = tests["object"].map(names)
+    margins = margins_table(tests, own).set_index("hypothesis")["margin"]
+    assert margins["order"] == pytest.approx(math.log(1.2 / 1.1))
 
 
 def test_a_tower_that_is_missing_leaves_its_statements_without_a_margin():

@@ -58,8 +58,10 @@ TIE = 1e-9
 """Margins below this are ties up to rounding: the amplitudes of two tests are the same of the IDA curve."""
 
 
-def margins_table(tests: pd.DataFrame) -> pd.DataFrame:
+def margins_table(tests: pd.DataFrame, bodies: Mapping[str, Block]) -> pd.DataFrame:
     """Margins of the hypotheses about floors for every building of a sensitivity study.
+
+    Bodies are specimens by name.
 
     Returns a row per building, reading and hypothesis: ``axis``, ``value``, ``label``, ``definition``,
     ``hypothesis``, ``margin``, ``holds`` and ``credible``.
@@ -70,7 +72,7 @@ def margins_table(tests: pd.DataFrame) -> pd.DataFrame:
         about = dict(zip(keys, values, strict=True))
         rows += [
             {**about, "hypothesis": name, "margin": margin, "holds": margin > TIE}
-            for name, margin in floor_margins(group).items()
+            for name, margin in floor_margins(group, bodies).items()
         ]
     columns = [
         "axis",

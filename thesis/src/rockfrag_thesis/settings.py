@@ -61,6 +61,8 @@ def read_settings(content: Mapping[str, Any], study: Study) -> Settings:
         )
     if settings.sensitivity is not None:
         _check_varied_building(study, settings.sensitivity)
+        if settings.compares:
+            _check_compared_floors(study)
     _check_mechanics(study, settings)
     if settings.sensitivity_analysis:
         _check_perturbed_bodies(study, settings.sensitivity_analysis)
@@ -114,6 +116,17 @@ def _check_varied_building(study: Study, varied: Mapping[str, Sequence[Any]]) ->
                 raise InputError(
                     f"{key}: expected a level up to {study.building.storeys}, found {level}."
                 )
+
+
+def _check_compared_floors(study: Study) -> None:
+    """Raise where varied buildings cannot be compared: the thesis orders its floors, by tests in pairs."""
+    from rockfrag_thesis.hypotheses.floors import FLOORS
+
+    if not study.has_pairs or not set(FLOORS) <= set(study.floors):
+        raise InputError(
+            f"{study.source}: key building_sensitivity: what the key compare_with compares are tests with and "
+            f"without a pedestal on the floors {', '.join(FLOORS)}; leave one of the two out."
+        )
 
 
 def tested_blocks(study: Study) -> dict[str, Block]:

@@ -22,7 +22,8 @@ def run(job: Job[Study]) -> Results:
     if settings_of(job.study).sensitivity is not None:
         from rockfrag_thesis.floor_order import margins_table
 
-        margins = margins_table(job.table("building_sensitivity/tests"))
+        tests = job.table("building_sensitivity/tests")
+        margins = margins_table(tests, tested_blocks(job.study))
         yield "building_sensitivity/margins", margins
 
 
