@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from rockfrag.fragility.censored import _fit_weighted, _terms
+from rockfrag.fragility.censored import (
+    Brackets,
+    _fit_weighted,
+    _terms,
+    _without_a_block,
+    fit_brackets,
+)
 
 # exact, between two bounds, below one, above one; of ln IM
 LOW = np.array([[-0.4, -0.7, -np.inf, 0.3, -2.0]])
@@ -62,3 +68,35 @@ def test_rows_that_share_a_bracket_and_rows_that_do_not_are_fitted_as_alone():
             assert both[0] == pytest.approx(both[1], rel=1e-9, nan_ok=True)
     assert not np.isnan(together.coefficients[0]).all()
     assert np.isfinite(together.coefficients[1]).all()
+
+
+def test_of_amplitudes_that_are_all_bounded_on_one_side_there_is_a_level_and_no_slope():
+    """All overturned at their first step, or none ever: the probability is one, or none, at every amplitude."""
+    low, high = np.log([0.2, 0.3, 0.1]), np.log([0.25, 0.4, 0.35])
+    nothing = np.full(3, np.inf)
+    ones = np.ones((1, 3))
+    at_once = _fit_weighted(-nothing, high, ones).coefficients[0]
+    never = _fit_weighted(low, nothing, ones).coefficients[0]
+    assert at_once[0] == np.inf and np.isnan(at_once[1])
+    assert never[0] == -np.inf and np.isnan(never[1])
+
+
+def test_where_all_tests_agree_their_likelihood_is_one():
+    """A median far enough above all, or below, makes their outcomes certain."""
+    bounds = np.array([0.2, 0.3, 0.1])
+    names = np.array(list("abc"), dtype=object)
+    survived = Brackets(bounds, np.full(3, np.inf), names, names)
+    at_once = Brackets(np.zeros(3), bounds, names, names)
+    for tests in (survived, at_once):
+        fit = fit_brackets(tests)
+        assert np.isnan(fit.theta) and fit.log_likelihood == 0
+
+
+def test_without_a_curve_of_all_each_block_is_left_out_by_a_fit_of_its_own():
+    """Half of the tests overturn at once, half never: the flatter a curve, the likelier are both."""
+    at_once = np.arange(12) % 2 == 0
+    low = np.where(at_once, -np.inf, np.log(0.6))
+    high = np.where(at_once, np.log(0.3), np.inf)
+    weights = 1.0 - np.eye(12)
+    found = _without_a_block(low, high, weights)
+    assert np.array_equal(found, _fit_weighted(low, high, weights).coefficients)

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+from scipy import stats
 
 from rockfrag.base.errors import InputError
 from rockfrag.fragility.counted import count_ida
@@ -316,3 +317,37 @@ def test_each_value_counts_where_a_single_motion_tried_it():
     found = fractions_of_outcomes(outcomes, np.array(list("abcd"), object), 0.9)
     np.testing.assert_array_equal(found.fraction, [0.0, 0.0, 1.0, 1.0])
     assert 0.2 <= found.theta <= 0.3
+
+
+def test_the_local_share_is_the_mean_under_a_normal_kernel_of_half_silvermans_width():
+    im, fell = np.array([0.1, 0.2, 0.4, 0.5, 0.9]), np.array([0, 1, 0, 1, 1])
+    table = pd.DataFrame({"pga_g": im, "overturned": fell})
+    wide = 0.53 * np.log(im).std() * 5**-0.2
+    at = np.array([0.08, 0.3, 0.45, 1.0])
+    weight = stats.norm.pdf(np.log(at)[:, None], np.log(im), wide)
+    expected = weight @ fell / weight.sum(axis=1)
+    outcomes = observations_from_table(table, "pga_g", motion=None)
+    assert local_fraction(outcomes, at) == pytest.approx(expected)
+
+
+def test_counts_have_the_local_share_of_as_many_single_tests():
+    counts = pd.DataFrame(
+        {"pga_g": [0.1, 0.3, 0.8], "overturned": [0, 3, 4], "trials": [2, 7, 5]}
+    )
+    alone = [
+        {"pga_g": row.pga_g, "overturned": k < row.overturned}
+        for row in counts.itertuples()
+        for k in range(row.trials)
+    ]
+    pooled = observations_from_table(counts, "pga_g", trials="trials", motion=None)
+    single = observations_from_table(pd.DataFrame(alone), "pga_g", motion=None)
+    at = [0.1, 0.2, 0.5, 1.0]
+    assert local_fraction(pooled, at) == pytest.approx(local_fraction(single, at))
+
+
+@pytest.mark.parametrize("names", [["a", "a", "b"], ["a", "b", "b"]])
+def test_measures_that_name_a_motion_twice_are_refused(names):
+    measures = pd.DataFrame({"name": names, "pga_g": [0.3, 0.4, 0.5]})
+    ida_curve = pd.DataFrame({"motion": ["a", "b"], "amplitude_g": [0.1, 0.2]})
+    with pytest.raises(InputError, match="has two rows"):
+        with_measures(ida_curve, measures, ["pga_g"])

@@ -10,6 +10,7 @@ import pytest
 from rockfrag.base.errors import InputError
 from rockfrag.fragility import censored, estimators, intervals
 from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval
+from rockfrag.fragility.check_notes import TAILS
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.ida_curves import fragility_table, tables_of_ida_curves
@@ -265,3 +266,20 @@ def test_limits_are_those_of_ninety_percent_where_no_level_is_asked_for():
     ]
     assert len(asked) > 5
     assert set(asked) == {0.90}
+
+
+@pytest.mark.parametrize(
+    ("capacities", "method", "warned"),
+    [
+        ([0.2, 0.3, 0.4, 0.5, 0.7], "jackknife", True),
+        # two motions leave beta without an upper limit
+        ([0.3, 0.9], "jackknife", False),
+        ([0.3, 0.3, 0.3, 0.3], "common step", False),
+    ],
+)
+def test_heavy_tails_are_warned_of_beside_jackknifed_limits_of_beta_alone(
+    capacities, method, warned
+):
+    row = reading(fragility_table(ida_of(capacities, STEPS)))
+    assert row["interval_method"] == method
+    assert (TAILS in row["warnings"]) == warned

@@ -215,3 +215,12 @@ def test_limits_cover_and_the_interaction_test_keeps_its_level(earthquakes):
     )
     assert (abs(held / laboratories - 0.90) <= 0.03).all()
     assert abs(found / laboratories - 0.05) <= 0.02
+
+
+def test_tables_hold_the_coefficient_of_a_product_that_earned_its_place():
+    table = laboratory(np.random.default_rng(2), 10, interaction=0.8)
+    fit = fit_vector(table, MEASURES)
+    assert fit.interaction.kept
+    row = vector_tables({"T1": table}, (MEASURES,)).fits.iloc[0]
+    assert tuple(row[["c0", "c1", "c2", "c12"]]) == fit.coefficients
+    assert (row["aic"], row["p_interaction"]) == (fit.aic, fit.interaction.p)
