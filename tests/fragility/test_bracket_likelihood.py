@@ -100,3 +100,13 @@ def test_without_a_curve_of_all_each_block_is_left_out_by_a_fit_of_its_own():
     weights = 1.0 - np.eye(12)
     found = _without_a_block(low, high, weights)
     assert np.array_equal(found, _fit_weighted(low, high, weights).coefficients)
+
+
+def test_where_the_brackets_left_touch_in_one_amplitude_none_is_left_out_by_a_step():
+    """Without the last bracket the others share 0.3, and no more: their curve rises there at once."""
+    low, high = np.log([0.2, 0.3, 0.2, 0.3, 0.5]), np.log([0.3, 0.4, 0.3, 0.4, 0.6])
+    weights = 1.0 - np.eye(5)
+    found = _without_a_block(low, high, weights)
+    assert np.array_equal(found, _fit_weighted(low, high, weights).coefficients)
+    assert -found[4, 0] / found[4, 1] == pytest.approx(np.log(0.3))
+    assert found[4, 1] > 1e4 > found[:4, 1].max()

@@ -294,6 +294,7 @@ def test_on_a_floor_its_own_motions_count_alone():
     for name in ("im", "overturned", "trials"):
         own, found = (getattr(each.outcomes("pga_g"), name) for each in (alone, beside))
         assert np.array_equal(own, found)
+    assert list(beside.resurrections("amplitude_g")["floor"]) == ["hall"] * 4
 
 
 def test_binomial_limits_are_those_of_wilson():

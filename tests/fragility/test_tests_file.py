@@ -138,6 +138,7 @@ def test_the_measure_that_decides_is_recommended_with_its_reasons(tmp_path):
     assert result.goodness["pgv_cm_s"].p_value > 0.05
     assert set(result.table["measure"]) == {"pga_g", "pgv_cm_s"}
     assert result.bins.groupby("measure").tests.sum().tolist() == [150, 150]
+    assert result.bins.index.is_unique
 
 
 def test_a_table_in_which_all_survived_gives_a_bound_and_no_recommendation(tmp_path):
