@@ -184,3 +184,12 @@ def test_ida_curves_with_survival_windows_separate_first_from_always():
     assert result.fraction_with_resurrections == pytest.approx(0.5, abs=0.02)
     widths = result.resurrections.query("resurrections == 1").window_width
     assert widths.median() == pytest.approx(np.log(1.6 / 1.3), abs=0.03)
+
+
+def test_tests_that_overturn_at_once_count_below_all_others_and_those_never_above():
+    lower, upper = [0.0, 0.0, 0.3, 0.4, 0.5], [0.2, 0.2, 0.35, 0.45, np.nan]
+    tests = pd.DataFrame({"lower_g": lower, "upper_g": upper})
+    found = fit_step_tests(tests, motion=None, earthquake=None).checks.fractions
+    assert found.fraction[0] == pytest.approx(2 / 5)
+    assert found.fraction[-1] == pytest.approx(4 / 5)
+    assert 0.2 < found.theta < 0.35
