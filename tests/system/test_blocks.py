@@ -92,3 +92,9 @@ def test_a_centre_of_gravity_may_be_as_high_as_the_top_and_no_higher():
     assert Block(0.4, 1.0, 50.0, inertia=4.0, cg_height=1.0).h == 1.0
     with pytest.raises(InputError, match="is above the top"):
         Block(0.4, 1.0, 50.0, inertia=4.0, cg_height=1.001)
+
+
+@pytest.mark.parametrize("size", [(2e6, 1.0), (1.0, 2e6)])
+def test_a_block_of_a_thousand_kilometres_is_refused_whichever_side_is_so_long(size):
+    with pytest.raises(InputError, match=r"no block is larger than 1e\+06 m"):
+        Block(*size, 100.0)

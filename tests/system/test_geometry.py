@@ -1,6 +1,7 @@
 """Blocks and stacks as numbers, beside matrices, sums over masses and momenta about points."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -241,3 +242,20 @@ def test_what_lanes_know_of_a_pivot_is_its_critical_angle_and_frequency(pivot):
         1 / (swing * alpha**2),
     )
     assert geometry.pivot_constants(shape, pivot, 0.9, 9.81) == pytest.approx(expected)
+
+
+def test_kernels_know_the_contact_of_a_stack_and_where_its_blocks_are_from_it():
+    lower, upper = Block(0.6, 0.5, 90.0, lean=0.02), Block(0.3, 1.0, 40.0, lean=-0.01)
+    pile, body = Stack(lower, upper, offset=0.03).pile, SimpleNamespace()
+    geometry.fill_pile(body, pile)
+    middle, along = np.array([body.tx, body.ty]), np.array([body.ex, body.ey])
+    assert along @ along == pytest.approx(1.0)
+    for pivot, end in ((1, pile.right), (-1, pile.left)):
+        # from the middle to an end, and from there to the statue's centre of gravity
+        assert middle + pivot * body.b2 * along == pytest.approx(end)
+        centre = pivot * body.b2 * along + geometry.upper_arm(pile, pivot)
+        assert centre == pytest.approx((body.c2x, body.c2y))
+        below = geometry.arm(pile.lower, pivot)
+        assert (body.c1x - pivot * body.b1, body.c1y) == pytest.approx(below)
+    assert (body.m1, body.m2, body.fixed) == (90.0, 40.0, False)
+    assert body.i1 == lower.centroidal_inertia and body.i2 == upper.centroidal_inertia

@@ -1,6 +1,7 @@
 """What holds bodies is checked where it is written, and named in the tables."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,8 +19,9 @@ from rockfrag.system import (
     as_system,
     hold,
 )
-from rockfrag.system.body import Circle, Interval, Polygon
-from rockfrag.system.system import System, cylinder
+from rockfrag.system.body import Circle, Interval, Polygon, RigidBody
+from rockfrag.system.mounts import wall_beside
+from rockfrag.system.system import Start, System, cylinder, reach_at, with_bodies
 
 BLOCK = Block(0.3, 1.2, 100.0)
 STACK = Stack(Block(0.6, 0.4, 300.0), BLOCK)
@@ -154,3 +156,34 @@ def test_one_bond_is_that_of_the_uppermost_contact_and_others_keep_theirs():
     below, above = Bond(50.0, 5.0, 0.2), Bond(20.0, 2.0, 0.1)
     held = hold(hold(as_system(STACK), bonds=[below, None]), bonds=above)
     assert [contact.bond for contact in held.contacts] == [below, above]
+
+
+def test_what_is_not_said_of_a_tie_or_of_a_start_is_nothing():
+    assert (CORD.damping, CORD.slack, CORD.strength) == (0.0, 0.0, math.inf)
+    assert Start((0.1,), (0.0,)).plate == 0.0
+
+
+def test_a_wall_keeps_its_distance_from_bodies_of_other_sizes():
+    for side in (1, -1):
+        wall = wall_beside(as_system(BLOCK), 0.07, side)
+        held = hold(as_system(BLOCK), wall)
+        for width in (0.2, 0.3, 0.5):
+            body = replace(BLOCK, width=width).body
+            (moved,) = with_bodies(held, [body]).constraints
+            assert (moved.side, moved.distance) == (
+                side,
+                pytest.approx(width / 2 + 0.07),
+            )
+
+
+def test_a_body_in_space_reaches_as_far_as_the_wider_of_its_base_and_its_face():
+    narrow, wide = ((0.2, 0.1), (-0.2, 0.1), (-0.2, -0.1), (0.2, -0.1)), SQUARE
+    tensor = np.diag([3.0, 3.0, 2.0])
+    for base, face in ((narrow, wide), (wide, narrow), (wide, None)):
+        outlines = Polygon(base), face and Polygon(face)
+        body = RigidBody(50.0, tensor, (0.0, 0.0, 0.4), outlines[0], 1.0, outlines[1])
+        system = System((body,), as_system(BLOCK).contacts)
+        for angle in (0.0, 0.6, 2.0):
+            along = math.cos(angle), math.sin(angle)
+            found = reach_at(system, Wall(2.0, angle))
+            assert found == pytest.approx(np.dot(SQUARE, along).max())

@@ -222,3 +222,10 @@ def test_a_statue_that_reaches_over_an_edge_rocks_as_one_whose_base_is_the_overl
     np.testing.assert_allclose(
         first.normal_force, other.normal_force, rtol=1e-6, atol=1e-6
     )
+
+
+def test_a_system_is_loose_where_a_contact_has_friction():
+    stack = Stack(Block(0.6, 0.4, 300.0), Block(0.3, 1.0, 100.0)).system()
+    loose = stack.with_friction(Friction(0.4, 0.3), at=1)
+    assert [each.friction for each in loose.contacts] == [None, Friction(0.4, 0.3)]
+    assert (stack.loose, loose.loose, loose.held().loose) == (False, True, False)
