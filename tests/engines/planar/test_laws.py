@@ -1,5 +1,6 @@
 """Impacts with friction and measured restitution together, each contact by its own law."""
 
+import math
 from collections import Counter
 from itertools import pairwise
 from typing import NamedTuple
@@ -11,6 +12,8 @@ from rockfrag.engines.compile.jit import entry_kernel
 from rockfrag.engines.planar.impact import kinetic_energy, strike
 from rockfrag.engines.planar.records import posed, system_record, working_memory
 from rockfrag.engines.planar.solve import look_at
+from rockfrag.laws import law_named
+from rockfrag.laws import laws as all_laws
 from rockfrag.simulation import MeasuredRestitution, simulate
 from rockfrag.system import Block, ImpactLaw, System, geometry
 
@@ -149,6 +152,41 @@ def survey(number, seed):
         )
         counts["jumps in mu"] += jumps([0.5, 0.8, 1.0, 1.3, 2.0], by_friction, scale)
     return counts
+
+
+@pytest.mark.parametrize("pivot", [1, -1])
+@pytest.mark.parametrize("measured", [0.75, 0.97])
+def test_each_law_leaves_the_lone_block_the_rate_that_was_measured(measured, pivot):
+    """0.75 is less than momentum leaves this block, 0.97 is more."""
+    shape, before = Block(0.4, 1.2, 80.0, cg_offset=0.02).shape, 1.7
+
+    def ratio(place: float) -> float:
+        """Of the rates after and before an impulse at a point of the base, 1 at the new pivot."""
+        kept = [
+            shape.inertia
+            + shape.mass * shape.y**2
+            + shape.mass
+            * (shape.x - at * shape.b)
+            * (shape.x - place * pivot * shape.b)
+            for at in (-pivot, pivot)
+        ]
+        return kept[0] / kept[1]
+
+    by_momentum = ratio(1.0)
+    assert 0.75 < by_momentum < 0.97
+    for name in LAWS:
+        law = law_named(name)
+        number, value = law.tell(shape, measured, pivot)
+        told = all_laws()[number]
+        moved = ratio(value) * before if told.moves_impulse else math.nan
+        after = told.rate(value, by_momentum * before, before, moved)
+        assert after == pytest.approx(measured * before)
+        # what the law of position cannot say a couple does
+        brakes = name == "position" and measured < by_momentum
+        assert told.name == ("couple" if brakes else name)
+    number, value = law_named("momentum").tell(shape, measured, pivot)
+    assert all_laws()[number].rate(value, by_momentum, 1.0, math.nan) == by_momentum
+    assert [law.name for law in all_laws() if law.scales_momentum] == ["couple"]
 
 
 @pytest.mark.parametrize("side", [1, -1])
