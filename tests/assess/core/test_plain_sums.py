@@ -13,7 +13,16 @@ from rockfrag.base.units import GRAVITY
 from ...mutants.plain import plain_library
 
 with plain_library():
-    from rockfrag.assess.core import demands, fractions, hazards, ordering, scales
+    from rockfrag.assess.core import (
+        bodies,
+        demands,
+        estimates,
+        fractions,
+        hazards,
+        ordering,
+        scales,
+        velocity,
+    )
 
 
 def test_numbers_are_sorted_and_summed_up_as_numpy_does():
@@ -127,3 +136,97 @@ def test_weights_of_earthquakes_are_dirichlets_as_wide_as_student_asks(earthquak
     a = max((n - 1) / student**2 - 1, 0.1 * n) / n
     expected = (1 / m) * (1 - 1 / m) / (m * a + 1)
     assert weights.var(axis=0).mean() == pytest.approx(expected, rel=0.1)
+
+
+def test_errors_of_a_rate_leave_its_mean_and_have_their_spreads():
+    z = special.ndtri((np.arange(4000) + 0.5) / 4000)
+    normals = np.column_stack([z, np.random.default_rng(4).permutation(z)])
+    rates, spreads = np.full(4000, 2e-3), np.array([0.3, 0.5])
+    estimates.fill_errors(rates, normals, spreads)
+    assert rates.mean() == pytest.approx(2e-3, rel=0.02)
+    assert np.log(rates).std() == pytest.approx(math.hypot(*spreads), rel=0.03)
+    # a positive normal value is a larger rate
+    assert np.corrcoef(np.log(rates), normals @ spreads)[0, 1] == pytest.approx(1.0)
+
+
+def test_an_interval_holds_nine_tenths_of_the_draws_and_all_fractions_by_one_earthquake():
+    draws = make_draws(1, 2)
+    size = len(draws.sources)
+    values = np.random.default_rng(5).permutation(np.linspace(0.2, 0.7, size))
+    for earthquakes, limits in ((2, (0.225, 0.675)), (1, (0.0, 1.0))):
+        found, work = np.zeros(estimates.MOTIONS + 2), np.zeros((2, size))
+        given = estimates.FRACTION, 1.0, values.mean(), 1.0, values, *work
+        estimates.fill_estimate(
+            *given, draws.bins, len(draws.weights), earthquakes, found
+        )
+        assert found[estimates.VALUE] == pytest.approx(0.45)
+        inner = found[[estimates.LOWER, estimates.UPPER]]
+        assert inner == pytest.approx(limits, abs=2 / size)
+
+
+def test_a_box_has_the_moments_of_its_sides_alone_and_with_a_square_pedestal():
+    width, depth, height, mass = 0.3, 0.5, 1.2, 80.0
+    own = np.array([width, height, mass, math.nan, math.nan, 0.0, depth])
+    found = np.zeros(4)
+    bodies.tell_box(own, own, found)
+    sides = (depth, height), (width, height), (width, depth)
+    of_box = [mass * (a**2 + b**2) / 12 for a, b in sides]
+    assert found == pytest.approx([*of_box, depth])
+    for wide in (0.4, 0.7):
+        pedestal = np.array([wide, 0.6, 200.0, math.nan, math.nan, 0.0, math.nan])
+        whole = np.zeros(7)
+        bodies.join(pedestal, own, whole)
+        bodies.tell_box(whole, own, found)
+        centre = (mass * (0.6 + height / 2) + 200.0 * 0.3) / (mass + 200.0)
+        # both about their common centre, by Steiner's rule
+        away = mass * (0.6 + height / 2 - centre) ** 2 + 200.0 * (0.3 - centre) ** 2
+        below = 200.0 * (wide**2 + 0.6**2) / 12, 200.0 * wide**2 / 6
+        assert found[0] == pytest.approx(of_box[0] + below[0] + away)
+        assert found[1] == pytest.approx(of_box[1] + below[0] + away)
+        assert found[2] == pytest.approx(of_box[2] + below[1])
+        assert found[3] == max(depth, wide)
+
+
+@pytest.mark.parametrize(
+    ("faster", "by_statics", "falls", "counts"),
+    [
+        # as strong as at the next level
+        (2.0, False, [0, 1, 1, 1], [1, 1, 1, 0]),
+        # what does not rock at a level topples at none
+        (2.0, True, [0, 0, 1, 1], [1, 1, 1, 0]),
+        (0.5, False, [0, 0, 0, 1], [0, 1, 1, 1]),
+        # where it rocks, and did not at the level before, that says nothing
+        (0.5, True, [0, 0, 0, 1], [0, 1, 0, 1]),
+    ],
+)
+def test_a_motion_as_fast_as_the_site_is_as_strong_as_at_another_level(
+    faster, by_statics, falls, counts
+):
+    """By one that rocks and topples an object from 4 on, where velocity alone decides."""
+    levels, fell = (
+        np.array([1.0, 2.0, 4.0, 8.0]),
+        np.array([[False, False, True, True]]),
+    )
+    places = np.zeros((1, 4), dtype=np.int64)
+    allowed, overturned, rocked = np.zeros((3, 1, 4), dtype=bool)
+    velocity.fill_moved(
+        levels,
+        np.ones_like(fell),
+        fell,
+        fell,
+        np.array([0.3]),
+        np.full(4, 0.3 + math.log(faster)),
+        np.zeros(1),
+        1.0,
+        by_statics,
+        np.zeros(4),
+        places,
+        allowed,
+        overturned,
+        rocked,
+    )
+    assert overturned[0].astype(int).tolist() == falls
+    assert allowed[0].astype(int).tolist() == counts
+    assert (rocked >= overturned).all()
+    step = 1 if faster > 1 else -1
+    assert places[0].tolist() == np.clip(np.arange(4) + step, 0, 3).tolist()
