@@ -7,20 +7,24 @@ import weakref
 import numpy as np
 import pandas as pd
 import pytest
+from scipy import stats
 
 from rockfrag.assess import coarse
 from rockfrag.assess.coarse import (
     PLANAR,
     Simulated,
+    Surface,
     coarse_inventory,
     coarse_lines,
     tabulate,
 )
+from rockfrag.assess.hazard.curve import PGV
 from rockfrag.assess.inventory import assess_each
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import make_request
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
+from rockfrag.fragility.toppling_velocity import toppling_velocity
 
 SHAKING = {"pga": "0.5 g"}
 
@@ -164,6 +168,41 @@ def test_what_it_cannot_take_is_refused(shared, tmp_path, capsys):
         coarse_inventory(path, {})
     assert main(["assess", "--coarse", "--pga", "0.2g"]) == 2
     assert "--coarse needs an inventory" in capsys.readouterr().err
+
+
+def surface_of(**changes):
+    """Medians that follow height and slenderness to powers of 0.5 and 1, which it interpolates exactly."""
+    heights, ratios = np.geomspace(0.2, 4.0, 5), np.geomspace(0.1, 1.0, 4)
+    medians = np.log(60 * np.sqrt(heights)[:, np.newaxis] * ratios)
+    given = {"level": 30.0, "hazard": None} | changes
+    return Surface(PGV, heights, ratios, medians, np.full((5, 4), 0.4), **given)
+
+
+def test_medians_that_are_published_stand_where_they_are_known_and_others_elsewhere():
+    heights, widths = np.array([1.0, 2.0, 3.5]), np.array([0.3, 0.5, 0.5])
+    computed, betas = surface_of().curves(heights, widths)
+    assert computed == pytest.approx(60 * np.sqrt(heights) * widths / heights)
+    medians, _ = surface_of(published=True).curves(heights, widths)
+    known, _ = toppling_velocity(widths, heights)
+    # in cm/s; the last one is higher than was fitted
+    assert medians[:2] == pytest.approx(100 * known[:2])
+    assert np.isnan(known[2]) and medians[2] == pytest.approx(computed[2])
+    assert betas == pytest.approx(0.4)
+
+
+def test_a_box_rocks_over_its_narrow_side_whichever_that_is():
+    table = pd.DataFrame(
+        {
+            "width_m": [0.5, 0.2, 0.2],
+            "depth_m": [0.2, 0.5, np.nan],
+            "height_m": [1.0, 1.0, 1.0],
+        }
+    )
+    coarse._fill(table, table.index, surface_of(), 50.0)
+    assert table["median"].to_numpy() == pytest.approx(60 * 0.2)
+    assert table["fraction"].to_numpy() == pytest.approx(
+        stats.norm.cdf(math.log(30.0 / 12.0) / 0.4)
+    )
 
 
 @pytest.mark.slow
