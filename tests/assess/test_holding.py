@@ -456,3 +456,15 @@ def test_without_a_level_the_answer_says_why_nothing_that_may_hold_it_is_tried(f
     said = " ".join(details_of(found))
     assert "is tried where the level of shaking is given" in said
     assert "on the page: what it must bear" not in said
+
+
+def test_words_name_the_distance_of_a_wall_and_the_height_of_ties_as_they_are_set():
+    block = Block(0.4, 1.5, 80.0)
+    (wall,) = Beside(0.07).on(as_system(block)).constraints
+    said = Beside(0.07).called()["distance"]
+    assert said.value == pytest.approx(100 * (wall.distance - 0.2))
+    for holder in (Cords(500.0, 0.004), Bracket(500.0, 0.004)):
+        tie, *_ = holder.on(as_system(block)).constraints
+        words = holder.called()
+        assert words["height"]["value"].value == pytest.approx(100 * tie.point[2] / 1.5)
+        assert words["slack"]["size"].value == pytest.approx(1000 * tie.slack)

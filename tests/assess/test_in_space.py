@@ -1,7 +1,9 @@
 """A base with width and depth, or a scan, is answered in space, beside the answer in one plane."""
 
 import json
+import math
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -11,11 +13,12 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.export import as_json
 from rockfrag.assess.findings import details_of, first_screen
 from rockfrag.assess.request import make_request
+from rockfrag.assess.scan import _least_angle_deg
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system import Block, Stack
-from rockfrag.system.mesh import read_shape
+from rockfrag.system.mesh import Shape, read_shape
 
 from .conftest import asked
 
@@ -187,3 +190,13 @@ def test_a_fine_round_base_keeps_as_many_corners_as_count(folder):
     base = np.array(shape.body(0.0, 0.001).base.vertices)
     assert 12 <= len(base) <= 48
     assert np.hypot(*base.T) == pytest.approx(0.2, rel=1e-3)
+
+
+@pytest.mark.parametrize("retreat_mm", [0.0, 30.0, 250.0])
+def test_a_scanned_box_balances_at_the_least_angle_over_its_narrow_side(retreat_mm):
+    """Half as wide as 0.2 m, which carries less far out, or not at all, where its edges are worn."""
+    corners = np.array(list(product((-0.2, 0.2), (-0.5, 0.5), (-0.6, 0.6))))
+    shape = Shape(corners, 100.0, np.eye(3), 0.48)
+    way = {"contact_tolerance_mm": 1.0, "edge_retreat_mm": retreat_mm}
+    angle = math.degrees(math.atan2(0.2 - retreat_mm / 1000, 0.6))
+    assert _least_angle_deg(shape, way) == pytest.approx(angle)

@@ -237,3 +237,14 @@ def test_a_set_says_the_velocity_that_its_motions_have_for_a_measure():
     assert known.of_set == pytest.approx(VELOCITY_PER_G)
     low, high = known.ends
     assert (low, high) == pytest.approx((0.5 * VELOCITY_PER_G, 4 * VELOCITY_PER_G))
+
+
+def test_what_is_accepted_is_one_percent_in_fifty_years_and_ten_at_a_level():
+    """docs/assess.md, "What to do"; in other years as often."""
+    assert asked(**SIZES).accepted == 0.1
+    with_hazard = asked(**SIZES, return_period="475 years")
+    assert with_hazard.years == 50.0
+    assert with_hazard.accepted == pytest.approx(0.01)
+    twice = asked(**SIZES, return_period="475 years", years=100)
+    assert 1 - twice.accepted == pytest.approx(0.99**2)
+    assert asked(**SIZES, accept=0.3).accepted == 0.3
