@@ -660,3 +660,27 @@ def test_the_details_say_how_many_motions_rock_it_a_third_of_the_way(few):
     assert part.value > 0.5 * np.interp(0.3, levels, far)
     said = " ".join(catalogue().lines(how_sure(found)))
     assert f"{100 * part.value:.2g} % of the motions rock it more than a third" in said
+
+
+def test_without_a_level_or_a_hazard_it_is_the_level_that_topples_half_that_is_asked(
+    few,
+):
+    found = assess_with(asked(**FIGURE), few, brief=True)
+    assert found.level is None and found.hazard is None
+    value = found.main.value
+    assert value == found.amplitudes[0.5].value
+    # half of the draws are below it
+    assert np.mean(found.main.draws <= value) == pytest.approx(0.5, abs=0.01)
+    assert found.target.of(np.array([0.1, 0.2, 0.4]), [0.3, 0.5, 0.9]) == 0.2
+
+
+@pytest.mark.parametrize("factor", [0.9, 1.3])
+def test_impacts_that_nobody_measured_lose_as_momentum_says_times_a_factor(factor):
+    """On each side by its own momentum, up to where no energy is lost."""
+    figure = asked(**FIGURE, cg_offset="4 cm").objects
+    system = replace(figure, restitution_factor=factor).system_of(figure.body)
+    law, block = system.contacts[0].law, figure.block
+    for pivot, found in ((1, law.right), (-1, law.left)):
+        lossless = block.pivot_inertia(-pivot) / block.pivot_inertia(pivot)
+        expected = factor * block.momentum_restitution(-pivot)
+        assert found == pytest.approx(min(expected, math.sqrt(lossless)))
