@@ -1,5 +1,7 @@
 """Hazard files of every kind are read, and what is wrong with one is said in a sentence."""
 
+import math
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +11,12 @@ from rockfrag.assess import read_hazard
 from rockfrag.assess.hazard.curve import (
     PGA,
     PGV,
+    _numbers,
+    _statistic_of,
     curve_of_one_level,
     make_curve,
     rate_weights,
+    rates_of,
     read_measure,
 )
 from rockfrag.base.errors import InputError
@@ -110,3 +115,44 @@ def test_a_file_that_is_absent_or_no_table_is_refused(tmp_path):
     for path in (tmp_path / "absent.csv", tmp_path, binary):
         with pytest.raises(InputError):
             read_hazard([path])
+
+
+def test_probabilities_of_any_time_are_rates_of_poissons_law():
+    for years in (0.5, 1.0, 50.0):
+        found = rates_of([0.0, 0.1, 0.9, 1.0], years, "test")
+        expected = [0.0, -math.log(0.9) / years, -math.log(0.1) / years, math.inf]
+        assert found == pytest.approx(expected)
+    for years in (0.0, -1.0, math.inf, math.nan):
+        with pytest.raises(InputError, match="must be above 0 years"):
+            rates_of([0.1], years, "test")
+    # the one that is wrong is named
+    for wrong in (-0.2, 1.5):
+        with pytest.raises(InputError, match=f"test: {wrong:g} is no probability"):
+            rates_of([0.0, 1.0, wrong], 50.0, "test")
+
+
+def test_a_curve_through_one_level_is_told_from_one_that_was_read():
+    assert not curve_of_one_level(PGA, 0.25, 475).is_read
+    assert make_curve(PGA, [0.01, 10.0], [rate(0.01), rate(10.0)], "test").is_read
+
+
+@pytest.mark.parametrize(
+    ("about", "said"),
+    [
+        ("", ""),
+        ('statistics="mean"', "mean"),
+        ('statistics="quantile" quantileValue="0.84"', "quantile-0.84"),
+        ('sourceModelTreePath="b1"', "branch of a logic tree"),
+        # a mean has a path through no tree, whatever else is written there
+        ('statistics="mean" sourceModelTreePath="b1"', "mean"),
+    ],
+)
+def test_which_of_several_curves_an_element_holds_is_read(about, said):
+    assert _statistic_of(ET.fromstring(f"<hazardCurves {about}/>")) == said
+
+
+def test_nothing_but_numbers_is_taken_for_a_list_of_numbers():
+    assert _numbers([1, 0.5]) == [1.0, 0.5]
+    for wrong in ([0.1, True], [0.1, "0.2"], [None], "0.1", {"0": 0.1}):
+        with pytest.raises(TypeError):
+            _numbers(wrong)

@@ -12,8 +12,12 @@ from rockfrag.fragility import censored, estimators, intervals
 from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval
 from rockfrag.fragility.check_notes import TAILS
 from rockfrag.fragility.empirical import TableIda
-from rockfrag.fragility.estimators import fit_cloud
-from rockfrag.fragility.ida_curves import fragility_table, tables_of_ida_curves
+from rockfrag.fragility.estimators import fit_cloud, fragility_of
+from rockfrag.fragility.ida_curves import (
+    fragility_table,
+    levels_drawn,
+    tables_of_ida_curves,
+)
 from rockfrag.fragility.intervals import (
     Interval,
     interval_over_motions,
@@ -283,3 +287,21 @@ def test_heavy_tails_are_warned_of_beside_jackknifed_limits_of_beta_alone(
     row = reading(fragility_table(ida_of(capacities, STEPS)))
     assert row["interval_method"] == method
     assert (TAILS in row["warnings"]) == warned
+
+
+def test_a_curve_is_drawn_from_half_a_percent_to_all_but_that_where_there_are_data():
+    table = ida_of(
+        0.35 * np.exp(0.4 * np.linspace(-1, 1, 9)), np.geomspace(0.01, 9, 90)
+    )
+    data = observations_from_table(table, "amplitude_g")
+    curve = fragility_of(data)
+    drawn = levels_drawn(curve, data, 50)
+    ends = curve.fit.probability(drawn[[0, -1]])
+    assert ends == pytest.approx([0.0047, 0.9953], abs=1e-4)
+    assert np.diff(np.log(drawn)) == pytest.approx(np.log(drawn[-1] / drawn[0]) / 49)
+    # and no further than a little beyond them
+    narrow = table[table["amplitude_g"].between(0.3, 0.4)]
+    few = observations_from_table(narrow, "amplitude_g")
+    lowest, highest = few.im.min(), few.im.max()
+    found = levels_drawn(curve, few, 50)[[0, -1]]
+    assert found == pytest.approx([0.8 * lowest, 1.25 * highest])

@@ -307,3 +307,23 @@ def test_earthquakes_that_a_measure_parts_wholly_are_foretold_by_the_others():
     assert np.isfinite(scores).all()
     # of five outcomes each a coin would score 5 ln 1/2
     assert (scores > 5 * np.log(0.5)).all()
+
+
+def test_of_measures_that_score_worse_the_next_best_is_named():
+    rows = [
+        {
+            "measure": name,
+            "im": name,
+            "unit": "g",
+            "theta": 0.4,
+            "beta": 0.3,
+            "auc": 0.8,
+        }
+        for name in ("best", "worst", "middle")
+    ]
+    apart = np.array([0.1, -0.1, 0.2, -0.2, 0.05, -0.05])
+    scores = np.array([[0.0] * 6, -9.0 + apart, -4.0 + apart])
+    found = _select(rows, scores, tests=6, given=[], replicates=50, seed=1)
+    assert list(found.table["measure"]) == ["best", "middle", "worst"]
+    assert "middle is worse: -4.000" in found.words
+    assert "worst is worse" not in found.words

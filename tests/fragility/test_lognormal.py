@@ -10,7 +10,7 @@ from rockfrag.fragility import lognormal
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.observations import observations_from_table
+from rockfrag.fragility.observations import labels, observations_from_table
 
 STRIPES = pd.DataFrame(
     {
@@ -174,3 +174,9 @@ def test_many_tests_are_fitted_by_cells_with_the_likelihood_of_the_tests(monkeyp
     expected = np.log(np.where(fell, probability, 1 - probability)).sum()
     assert alone.log_likelihood == pytest.approx(expected, rel=1e-9)
     assert by_cells.log_likelihood == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_label_that_is_missing_is_named_by_its_row():
+    names = pd.DataFrame({"motion": ["a", "b", None, "d"]})
+    with pytest.raises(InputError, match=r"table, row 3, column 'motion': the label"):
+        labels(names, "motion")
