@@ -1,12 +1,15 @@
 """Many objects under the same motions: what topples together is counted, and each is as it is alone."""
 
+import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.hazard.curve import PGA
+from rockfrag.assess.core.prediction import Shift
+from rockfrag.assess.hazard.curve import PGA, curve_of_one_level
 from rockfrag.assess.inventory import (
     FaultyRows,
     assess_each,
@@ -16,8 +19,10 @@ from rockfrag.assess.inventory import (
     joint_lines,
     read_inventory,
 )
+from rockfrag.assess.joint_risk import _correlation, _losses, _shared, _Together
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.outcomes import make_intensity_levels
+from rockfrag.assess.risk import Evidence
 from rockfrag.assess.standing.changes import on_plate, with_ballast
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
@@ -25,7 +30,7 @@ from rockfrag.system.blocks import Block
 from rockfrag.words.catalogue import catalogue
 
 from ..case_tables import case_tables
-from .conftest import asked
+from .conftest import asked, outcomes_of
 
 CASES = case_tables(__file__)
 
@@ -239,3 +244,65 @@ def test_what_is_left_leaning_is_said_in_its_line_and_in_the_table(
     alone = table["fraction_or_leaning"] - table["fraction"]
     assert alone["far"] > 0.05 >= alone["near"]
     assert f"{100 * alone['far']:.2g} % leave" in lines["far"]
+
+
+def test_so_much_is_lifted_where_the_objects_lifted_so_far_are_worth_it():
+    """Of three motions, under which objects of 1, 2 and 4 lift one after the other, two topple all of it."""
+    levels, hazard = np.array([0.1, 0.2, 0.4]), curve_of_one_level(PGA, 0.3, 475)
+    lifting = np.array([[0.1, 0.1, 0.4], [0.2, 0.4, np.inf], [0.4, 0.4, np.inf]])
+    toppled = np.array([[0.0, 3.0, 7.0], [0.0, 1.0, 7.0], [0.0, 0.0, 1.0]])
+    fell = outcomes_of(toppled > 0, levels, ["a", "b", "c"])
+    together = _Together(
+        evidence=[Evidence(fell)],
+        rates=np.zeros(3),
+        shared={},
+        worth=np.array([1.0, 2.0, 4.0]),
+        outcomes=fell,
+        toppled=toppled,
+        lifting=lifting,
+        lifted=np.array([[1.0, 1.0, 1.0], [3.0, 3.0, 3.0], [7.0, 7.0, 7.0]]),
+    )
+    for least, lifts in ((1, [0.1, 0.1, 0.4]), (2, lifting[1]), (7, lifting[2])):
+        found, rate = together.losing(least, hazard)
+        assert found.outcomes.lifting.tolist() == list(lifts)
+        assert np.array_equal(found.outcomes.overturned, toppled >= least)
+        assert rate > 0
+    rates = [together.losing(least, hazard)[1] for least in (1, 2, 7)]
+    assert rates == sorted(rates, reverse=True)
+    # more than all objects are worth nothing topples
+    found, _ = together.losing(8, hazard)
+    assert np.isinf(found.outcomes.lifting).all()
+    assert not found.outcomes.overturned.any()
+
+
+def test_objects_share_the_least_of_what_moves_each_of_them():
+    moved = [
+        SimpleNamespace(
+            shifts={"model": Shift(0.0, of_model), "width": Shift(0.1, 0.1)}
+        )
+        for of_model in (0.3, -0.2, 0.25)
+    ]
+    found = _shared(moved)
+    assert found["model"] == Shift(0.0, -0.2)
+    # what no one or not every one has nobody shares
+    assert found["space"] == Shift(0.0, 0.0) and "width" not in found
+
+
+def test_two_topple_together_as_often_as_motions_topple_both():
+    """The rates of levels, of which the second allows no motion and counts with the first."""
+    one = np.array([[1, 1, 1], [0, 0, 1], [0, 0, 1]], bool)
+    two = np.array([[1, 1, 1], [1, 1, 1], [0, 0, 0]], bool)
+    allowed = np.array([[1, 0, 1], [1, 0, 1], [1, 0, 0]], bool)
+    rates = np.array([0.3, 0.2, 0.1])
+    found = _correlation(np.array([one, two]), allowed, rates)
+    alone = 0.5 / 3 + 0.1, 0.5 * 2 / 3 + 0.1
+    both = 0.5 / 3 + 0.1
+    assert (
+        found[0, 1] == found[1, 0] == pytest.approx(both / math.sqrt(math.prod(alone)))
+    )
+    assert np.diag(found) == pytest.approx(1.0)
+
+
+def test_where_nothing_topples_no_loss_is_exceeded():
+    none = SimpleNamespace(toppled=np.zeros((3, 2)))
+    assert _losses(none, curve_of_one_level(PGA, 0.3, 475)).empty
