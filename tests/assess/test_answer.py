@@ -31,7 +31,7 @@ from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.mitigations import compare
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.page import page_of, write_answer
-from rockfrag.assess.place import PERIOD_FACTORS, Place
+from rockfrag.assess.place import PERIOD_FACTORS, Place, make_place
 from rockfrag.assess.request import Records, make_request, read_request
 from rockfrag.assess.risk import Estimate, Evidence, fraction_target
 from rockfrag.assess.sources import MEASUREMENTS
@@ -495,6 +495,21 @@ def test_a_building_is_described_as_conservators_know_it():
     assert (
         catalogue().say(inline.where).startswith("on the floor “attic”, level 2 of 2")
     )
+
+
+def test_a_building_may_be_that_of_a_file_beside_the_request(tmp_path):
+    building = {
+        "storey_heights_m": [4, 3],
+        "masses_kg": [2e5, 1e5],
+        "first_period_s": 0.3,
+        "floors": {"hall": 0, "loft": 2},
+    }
+    (tmp_path / "house.yaml").write_text(json.dumps(building))
+    place = make_place({"building": "house.yaml", "floor": "loft"}, tmp_path)
+    assert place.building.heights == (4.0, 3.0)
+    assert place.building.level(place.label) == 2
+    with pytest.raises(InputError, match=r"which of hall, loft of house\.yaml"):
+        make_place({"building": "house.yaml"}, tmp_path)
 
 
 @pytest.mark.parametrize(("floor", "name"), CASES["floors"])

@@ -11,7 +11,7 @@ import pytest
 from rockfrag import overturns
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.export import as_json
-from rockfrag.assess.findings import details_of, first_screen
+from rockfrag.assess.findings import details_of, first_screen, quality_flags
 from rockfrag.assess.request import make_request
 from rockfrag.assess.scan import _least_angle_deg
 from rockfrag.assess.texts import Text
@@ -200,3 +200,20 @@ def test_a_scanned_box_balances_at_the_least_angle_over_its_narrow_side(retreat_
     way = {"contact_tolerance_mm": 1.0, "edge_retreat_mm": retreat_mm}
     angle = math.degrees(math.atan2(0.2 - retreat_mm / 1000, 0.6))
     assert _least_angle_deg(shape, way) == pytest.approx(angle)
+
+
+def test_of_records_of_one_component_it_is_said_that_they_are_no_motion_in_space(
+    found, few
+):
+    def said(answer):
+        flags = [getattr(flag, "id", "") for flag in quality_flags(answer)]
+        return Text.FLAG_ONE_COMPONENT in flags
+
+    planar = {key: BOX[key] for key in BOX if key != "depth"}
+    lone = replace(few, pairs=())
+    alone, in_plane, both = (
+        assess_with(asked(**sizes, pga="0.4 g"), shaken, brief=True)
+        for sizes, shaken in ((BOX, lone), (planar, lone), (planar, few))
+    )
+    assert said(alone)
+    assert not any(map(said, (found, in_plane, both)))
