@@ -54,7 +54,14 @@ def test_progress_rises_to_the_whole(settings, few):
 
 
 @pytest.mark.parametrize(
-    ("settings", "brief"), [(BLOCK, False), (BLOCK, True), (COLUMN, False)]
+    ("settings", "brief"),
+    [
+        (BLOCK, False),
+        (BLOCK, True),
+        (COLUMN, False),
+        # shaken under other periods and dampings of its building too
+        (BLOCK | {"floor": "2/3"}, False),
+    ],
 )
 def test_the_work_that_is_expected_is_the_work_that_is_done(settings, brief, few):
     """Otherwise the seconds left would run ahead, or stand still at the end."""
