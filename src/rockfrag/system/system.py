@@ -273,7 +273,16 @@ def _check_bond(bond: Bond, system: System, k: int) -> None:
 
 
 def bearing(system: System, k: int) -> Outline:
-    """What of the base of body k lies on what is under it; of a body in space the whole base."""
+    """What of a body's base lies on what is under it.
+
+    Parameters
+    ----------
+    system, k : the bodies, and the number of one from below, from 0
+
+    Returns
+    -------
+    That part of the base of a planar body, in its own axes; the whole base of one in space.
+    """
     body = system.bodies[k]
     if not k or not system.planar:
         return body.base
