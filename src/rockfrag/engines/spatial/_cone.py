@@ -110,6 +110,12 @@ def members(s, n, mask):
 
 
 @kernel
+def grip_before(s, i):
+    """Coefficient of contact i before it is known what it does: kinetic if it slid as it came, else static [-]."""
+    return s.friction[i] if s.slid[i] else s.holds[i]
+
+
+@kernel
 def residuals(s, size, x, pace, out):
     """Fill ``out`` with the residuals of equation 17 (``docs/space.md``) for the members of a set, three each.
 
@@ -424,7 +430,7 @@ def shorten_to_cones(s, n, mask):
     for i in range(n):
         if in_set(mask, i) and not s.given[i]:
             a = 3 * i
-            s.grip[i] = s.friction[i] if s.slid[i] else s.holds[i]
+            s.grip[i] = grip_before(s, i)
             limit = s.grip[i] * max(s.impulse[a + 2], 0.0)
             shear = norm(s.impulse[a], s.impulse[a + 1])
             if shear > limit:
@@ -445,7 +451,7 @@ def slide_one_end(s, n, small):
         on_one_surface = edge[0] != 0.0 or edge[1] != 0.0
         if s.given[sticks] or s.given[slides] or not on_one_surface:
             return False
-        s.grip[sticks] = s.friction[sticks] if s.slid[sticks] else s.holds[sticks]
+        s.grip[sticks] = grip_before(s, sticks)
         s.grip[slides] = s.friction[slides]
         for side in (1.0, -1.0):
             way = (-side * edge[1], side * edge[0])
@@ -663,7 +669,7 @@ def shared(s, n, least):
     largest, scale = largest_compliance(s, n), speed_to_stop(s, n)
     pace = 1.0 / largest
     for i in range(n):
-        s.grip[i] = s.friction[i] if s.slid[i] else s.holds[i]
+        s.grip[i] = grip_before(s, i)
         for k in range(3):
             s.impulse[3 * i + k] = 0.0
     relax(s, n, ROUNDING * scale)
