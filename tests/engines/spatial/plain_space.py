@@ -10,8 +10,10 @@ with plain_library():
     from rockfrag.engines.algebra.vectors import rotation
     from rockfrag.engines.spatial import _at_rest as at_rest
     from rockfrag.engines.spatial import _body as solid
+    from rockfrag.engines.spatial import _case as case
     from rockfrag.engines.spatial import _cone as cone
     from rockfrag.engines.spatial import _contacts as contacts
+    from rockfrag.engines.spatial import _delassus as delassus
     from rockfrag.engines.spatial import _events as events
     from rockfrag.engines.spatial import _face as face
     from rockfrag.engines.spatial import _forces as forces
@@ -30,6 +32,7 @@ with plain_library():
     from rockfrag.engines.spatial import _rim as rim
     from rockfrag.engines.spatial import _step as step
     from rockfrag.engines.spatial import _stick as stick
+    from rockfrag.engines.spatial import _ties as ties
     from rockfrag.engines.spatial import engine
     from rockfrag.engines.spatial.body import kernel_body
     from rockfrag.system import Tie, Wall
@@ -47,8 +50,10 @@ __all__ = [
     "Tie",
     "Wall",
     "at_rest",
+    "case",
     "cone",
     "contacts",
+    "delassus",
     "engine",
     "events",
     "face",
@@ -70,6 +75,7 @@ __all__ = [
     "solid",
     "step",
     "stick",
+    "ties",
     "whole",
 ]
 
@@ -110,16 +116,16 @@ def state(rng, body):
     return y
 
 
-def case():
+def memory():
     """Memory of an analysis on ground at rest."""
-    s = plain(np.zeros(1, forces.CASE)[0])
-    s.field[2], s.field[forces.GRAVITY] = -G, G
+    s = plain(np.zeros(1, case.CASE)[0])
+    s.field[2], s.field[case.GRAVITY] = -G, G
     return s
 
 
 def shaken(rng, size=2.0):
     """Memory of an analysis on ground that moves, with accelerations and rises of a size."""
-    s = case()
+    s = memory()
     s.field[:6] = rng.normal(0, size, 6)
     s.field[2] -= G
     s.close = limits.CLOSE

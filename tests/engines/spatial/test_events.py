@@ -28,6 +28,7 @@ from .plain_space import (
     attitude,
     case,
     contacts,
+    delassus,
     events,
     face,
     forces,
@@ -41,6 +42,7 @@ from .plain_space import (
     kernel_body,
     leaning,
     limits,
+    memory,
     mode,
     modes,
     outcome,
@@ -151,7 +153,7 @@ def test_a_body_leaves_rest_over_the_edge_or_the_vertex_that_the_line_of_thrust_
     i,
 ):
     rng = np.random.default_rng(2)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     body.static = 2.0
     y = upright(body, 0.0, 0.4, -0.3)
     j = (i + 1) % 6
@@ -171,14 +173,14 @@ def test_a_body_leaves_rest_over_the_edge_or_the_vertex_that_the_line_of_thrust_
 
 def test_a_body_leaves_rest_sliding_where_effective_gravity_takes_it():
     rng = np.random.default_rng(3)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     body.static = 0.2
     y = upright(body, 0.7)
     s.field[:3] = -0.6 * 0.2 * G, 0.8 * 0.2 * G, -G
     at_rest.leave_rest(body, y, 0.0, s)
     assert s.count == 4
     assert len(set(s.closed[:4].tolist())) == 4
-    assert (s.slides[:4] == forces.SLIDES).all()
+    assert (s.slides[:4] == case.SLIDES).all()
     assert s.direction[:4] == pytest.approx(np.tile((-0.6, 0.8), (4, 1)))
     assert s.counters[limits.SLIDINGS] == 1
 
@@ -187,7 +189,7 @@ def test_a_round_body_leaves_rest_over_the_rims_point_that_the_line_of_thrust_me
     """About that point, which stays where it is; what the tilt lifts is work of the ground."""
     rng = np.random.default_rng(4)
     for _ in range(6):
-        body, s = drum(), case()
+        body, s = drum(), memory()
         body.static = 3.0
         y = upright(body, rng.uniform(0, 6), 0.4, -0.3)
         r, way = attitude(y), rng.uniform(0, 6)
@@ -201,7 +203,7 @@ def test_a_round_body_leaves_rest_over_the_rims_point_that_the_line_of_thrust_me
         p = np.array([*at, -body.height])
         at_rest.leave_rest(body, y, 0.0, s)
         assert s.closed[: s.count].tolist() == [body.count]
-        assert (s.rests, s.slides[0]) == (0, forces.STICKS)
+        assert (s.rests, s.slides[0]) == (0, case.STICKS)
         up = attitude(y)[2]
         assert np.hypot(*up[:2]) == pytest.approx(rim.RIM_START, rel=1e-6)
         assert -up[:2] / np.hypot(*up[:2]) == pytest.approx(u, abs=1e-6)
@@ -214,7 +216,7 @@ def test_a_round_body_leaves_rest_over_the_rims_point_that_the_line_of_thrust_me
 
 def test_a_round_body_keeps_rest_while_the_line_of_thrust_meets_the_disc():
     rng, kept = np.random.default_rng(5), set()
-    body, s = drum(), case()
+    body, s = drum(), memory()
     body.static = 3.0
     for _ in range(40):
         y = upright(body, rng.uniform(0, 6))
@@ -255,9 +257,9 @@ def test_feet_of_a_round_body_are_a_quarter_of_a_turn_apart_the_first_ahead():
 
 
 def test_a_pass_near_flat_turns_the_contact_on_and_keeps_tilt_and_its_rate():
-    for slides in (forces.STICKS, forces.SLIDES):
+    for slides in (case.STICKS, case.SLIDES):
         for side in (1.0, -1.0):
-            body, s = drum(off=(0.0, 0.0)), case()
+            body, s = drum(off=(0.0, 0.0)), memory()
             body.pass_turn, body.slide_turn = 2.1, 2.6
             y = leaning(body, 5e-9, 0.8)
             # it sinks, and its contact goes round a little
@@ -300,7 +302,7 @@ def test_a_pass_near_flat_turns_the_contact_on_and_keeps_tilt_and_its_rate():
 def test_a_body_in_the_air_lands_when_its_parabola_meets_the_ground():
     rng = np.random.default_rng(8)
     for vertical in (-0.4, 0.02):
-        body, s = uneven(rng), case()
+        body, s = uneven(rng), memory()
         y = leaning(body, 0.2, 0.5)
         y[9] = vertical
         low = min(solid.gap(body, y, rotation(y)[2], i) for i in range(6))
@@ -411,7 +413,7 @@ def test_peaks_from_each_sample_on_and_in_a_window_are_numpys():
             lift[ahead].max(),
         ]
         assert peaks[k] == pytest.approx(expected)
-    s = case()
+    s = memory()
     ground.note_soon(s, peaks, 20, 1.5, DT)
     assert s.soon[:2] == pytest.approx(1.5 * peaks[20, 2:])
     # intervals k to k + WINDOW - 1 end before the window's last sample
@@ -432,14 +434,14 @@ def test_the_ground_is_linear_between_samples_and_at_rest_one_after_the_last():
                 for i in range(3)
             ]
             expected = -np.array(along) - (0, 0, G)
-            found = forces.effective_gravity_at(field, part * DT)
+            found = case.effective_gravity_at(field, part * DT)
             assert found == pytest.approx(expected, abs=1e-12)
-        assert field[forces.GRAVITY] == G
+        assert field[case.GRAVITY] == G
 
 
 def test_a_window_is_passed_at_rest_only_where_no_direction_of_its_peaks_moves_the_body():
     rng, seen = np.random.default_rng(12), set()
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     for _ in range(30):
         peaks = rng.uniform(0, 6, (1, 4))
         level, weight = 1.5 * peaks[0, 2], G - 1.5 * peaks[0, 3]
@@ -456,7 +458,7 @@ def test_a_window_is_passed_at_rest_only_where_no_direction_of_its_peaks_moves_t
 def test_what_ties_bear_is_noted_and_they_turn_and_break_as_their_force_says():
     rng = np.random.default_rng(13)
     tie = Tie((0.1, 0.0, 1.0), (1.0, 0.2, 1.1), 500.0, damping=4.0, strength=100.0)
-    body, s = uneven(rng, tie), case()
+    body, s = uneven(rng, tie), memory()
     y = upright(body)
     y[9] = 1e-3
     holders.begin_holding(body, y, s)
@@ -483,7 +485,7 @@ def test_what_ties_bear_is_noted_and_they_turn_and_break_as_their_force_says():
 
 def test_a_bond_is_noted_with_half_of_what_it_holds_at_most():
     rng = np.random.default_rng(14)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     y = upright(body)
     body.pads[:], body.tension = 0.2, 9.0
     s.field[:6] = 2.0, 1.0, -G, 300.0, 0.0, 0.0
@@ -504,7 +506,7 @@ def test_a_state_is_settled_on_what_it_pivots_about(closed):
     """The point is where it stuck and does not move; an edge lets turn about itself alone."""
     rng = np.random.default_rng(15)
     body = drum() if closed == "rim" else uneven(rng)
-    s, y = case(), leaning(body, 0.3, 1.0)
+    s, y = memory(), leaning(body, 0.3, 1.0)
     y[:3] += 1e-3
     y[7:13] = rng.normal(size=6)
     mode(s, *((body.count,) if closed == "rim" else closed))
@@ -530,13 +532,13 @@ def test_a_state_is_settled_on_what_it_pivots_about(closed):
 def test_slips_that_have_ended_stick_and_what_is_left_of_them_is_stopped():
     rng = np.random.default_rng(16)
     for speed, sticks in ((1.9e-4, True), (2.1e-4, False)):
-        body, s = uneven(rng), case()
+        body, s = uneven(rng), memory()
         y = leaning(body, 0.2, 0.4)
-        mode(s, 2, slides=forces.SLIDES)
+        mode(s, 2, slides=case.SLIDES)
         gaps.close_gaps(body, y, rotation(y), s)
         y[7], y[8] = 0.6 * speed, -0.8 * speed
         events.stop_slips(body, y, s)
-        assert s.slides[0] == (forces.STICKS if sticks else forces.SLIDES)
+        assert s.slides[0] == (case.STICKS if sticks else case.SLIDES)
         left = jacobian(y, point(body, 2)) @ y[7:13]
         kept = 0.0 if sticks else speed
         assert np.hypot(*left[:2]) == pytest.approx(kept, abs=1e-15)
@@ -580,7 +582,7 @@ def test_a_hop_is_closed_unseen_if_what_it_leaves_out_is_small():
 
 def test_hits_of_walls_are_counted_with_the_whole_impulse_of_each():
     rng = np.random.default_rng(18)
-    body, s = uneven(rng, Wall(2.0, 0.0), Wall(2.0, math.pi)), case()
+    body, s = uneven(rng, Wall(2.0, 0.0), Wall(2.0, math.pi)), memory()
     second = solid.WALLS + solid.MOST_CORNERS
     s.which[:4] = solid.WALLS, solid.WALLS + 3, second + 1, 2
     for size in (1.0, 0.5):
@@ -596,7 +598,7 @@ def test_hits_of_walls_are_counted_with_the_whole_impulse_of_each():
 
 
 def test_momentum_beyond_friction_is_noted_and_counted():
-    body, s = uneven(np.random.default_rng(19)), case()
+    body, s = uneven(np.random.default_rng(19)), memory()
     y = np.zeros(solid.SIZE)
     y[7:10] = 0.3, 0.4, 0.6
     before = (0.0, 0.8, 0.1)
@@ -617,7 +619,7 @@ def test_against_a_wall_a_body_neither_tips_nor_needs_ground_for_what_the_wall_b
     holders = (Wall(5.0, 1.0), Wall(0.2, 0.0, friction=0.3))
     body = kernel_body(System((box,), (Contact(),), constraints=holders))
     body["static"], body["kinetic"] = 0.5, 0.3
-    body, s = plain(body), case()
+    body, s = plain(body), memory()
     y = upright(body)
     rows = rotation(y)
     assert rest.lies_against(body, y, rows, 1)
@@ -640,7 +642,7 @@ def test_against_a_wall_a_body_neither_tips_nor_needs_ground_for_what_the_wall_b
 
 def test_what_a_wall_or_the_ground_holds_is_left_out_where_a_mode_comes_again():
     """What is furthest out of its cone slides, by the friction of its own surface."""
-    body, s = uneven(np.random.default_rng(20), Wall(2.0, 0.0, friction=0.1)), case()
+    body, s = uneven(np.random.default_rng(20), Wall(2.0, 0.0, friction=0.1)), memory()
     body.static = 0.5
     wall = solid.WALLS + 2
     for grips, worst in (((0.5, 0.1), 1), ((0.05, 0.9), 0)):
@@ -651,14 +653,14 @@ def test_what_a_wall_or_the_ground_holds_is_left_out_where_a_mode_comes_again():
         assert s.slides[:2].tolist() == [int(worst == k) for k in range(2)]
     # one that slides already is not asked again
     mode(s, 1, wall)
-    s.slides[0] = forces.SLIDES
+    s.slides[0] = case.SLIDES
     contacts.insist(body, limits.LEAVES_CONE, s)
     assert s.slides[:2].tolist() == [1, 1]
 
 
 def test_gaps_at_ground_and_wall_are_closed():
     rng = np.random.default_rng(21)
-    body, s = uneven(rng, Wall(0.5, 0.3)), case()
+    body, s = uneven(rng, Wall(0.5, 0.3)), memory()
     y = leaning(body, 0.15, 0.3)
     y[2] += 1e-4 - min(solid.gap(body, y, rotation(y)[2], i) for i in range(6))
     nearest = [solid.gap_of(body, y, rotation(y), solid.WALLS + k) for k in range(12)]
@@ -684,7 +686,7 @@ def test_gaps_at_ground_and_wall_are_closed():
 
 def test_of_contacts_outside_of_a_set_the_one_that_approaches_fastest_is_missed():
     rng = np.random.default_rng(22)
-    body, s = uneven(rng, Wall(2.0, 0.3)), case()
+    body, s = uneven(rng, Wall(2.0, 0.3)), memory()
     for _ in range(6):
         y = state(rng, body)
         set_down(y, body)
@@ -723,10 +725,10 @@ def test_contacts_that_part_slowly_stay_closed_and_are_held():
     hops.keep_slow_contacts(body, y, rotation(y), (0.0, 0.0, -G), 3, 0b001, True, s)
     # beside the one that pushes it hops, and sticks
     assert s.closed[: s.count].tolist() == [1, 2]
-    assert s.slides[:2].tolist() == [forces.STICKS, forces.STICKS]
+    assert s.slides[:2].tolist() == [case.STICKS, case.STICKS]
     hops.keep_slow_contacts(body, y, rotation(y), (0.0, 0.0, -G), 3, 0b101, True, s)
     assert s.closed[: s.count].tolist() == [1, 2, 4]
-    assert s.slides[:3].tolist() == [forces.STICKS, forces.SLIDES, forces.STICKS]
+    assert s.slides[:3].tolist() == [case.STICKS, case.SLIDES, case.STICKS]
     assert s.rests == 0
     # not a hop beside one that slips, nor beside two that push
     s.after[:6] = 0.6, -0.8, 0.0, 0.0, 0.0, 1e-4
@@ -762,13 +764,13 @@ def test_a_corner_leaves_a_smooth_wall_by_its_ratio(ratio):
         assert s.impact[0] == pytest.approx(push)
         assert (s.hits[0], s.counters[limits.IMPACTS]) == (1.0, 1)
         assert s.closed[: s.count].tolist() == [solid.WALLS + k]
-        assert s.slides[0] == forces.SLIDES
+        assert s.slides[0] == case.SLIDES
 
 
 def test_a_rattle_is_ended_that_lasts_no_longer_than_the_ground_is_weak():
     """Equation 19, with the moment that the strongest ground to come leaves."""
     rng = np.random.default_rng(25)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     s.soon[:] = 0.8, 0.5, 0.15
     rights = (G - 0.5) * body.nearest - 0.8 * body.height
     inertia = (
@@ -805,7 +807,7 @@ def test_the_walk_is_that_of_the_point_below_the_centre_of_mass():
 
 def test_a_history_keeps_state_turn_and_what_is_closed():
     rng = np.random.default_rng(27)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     y, out, history = state(rng, body), np.zeros(outcome.OUTCOME), np.zeros((2, 17))
     out[outcome.TURN] = 7.0
     before = outcome.heading(y)
@@ -828,7 +830,7 @@ def test_a_history_keeps_state_turn_and_what_is_closed():
 
 
 def test_a_small_wobble_lies_down_and_what_it_loses_is_told():
-    body, s = drum(off=(0.0, 0.0)), case()
+    body, s = drum(off=(0.0, 0.0)), memory()
     y = leaning(body, 1e-5, 0.4)
     mode(s, body.count)
     y[10:13] = 1e-4, 2e-4, 0.0
@@ -849,10 +851,10 @@ def test_a_small_wobble_lies_down_and_what_it_loses_is_told():
 @pytest.mark.parametrize("way", [0.0, 2.0])
 def test_a_small_wobble_that_slides_lies_down_and_slides_on(way):
     """Friction that cannot tip it: what tilts it goes, what carries it along stays, and brakes by µ g."""
-    body, s = drum(off=(0.0, 0.0)), case()
+    body, s = drum(off=(0.0, 0.0)), memory()
     body.kinetic = body.static = 0.1
     y = leaning(body, 1e-6, 0.4)
-    mode(s, body.count, slides=forces.SLIDES)
+    mode(s, body.count, slides=case.SLIDES)
     speed = 0.5 * np.array([math.cos(way), math.sin(way)])
     s.direction[0] = speed / 0.5
     y[7:9], y[9:12] = speed, (1e-6, 2e-6, 3e-6)
@@ -862,11 +864,11 @@ def test_a_small_wobble_that_slides_lies_down_and_slides_on(way):
     assert lost == pytest.approx(had - solid.energy(body, y, G)) and lost > 0
     assert y[2] == body.height and points.lies_flat(body, y, rotation(y))
     assert s.jammed == 0 and s.rests == 0 and s.count > 0
-    assert s.slides[: s.count].tolist() == [forces.SLIDES] * s.count
+    assert s.slides[: s.count].tolist() == [case.SLIDES] * s.count
 
 
 def test_a_wobble_that_is_given_up_lies_flat_and_what_it_had_is_told():
-    body, s = drum(off=(0.0, 0.0)), case()
+    body, s = drum(off=(0.0, 0.0)), memory()
     y = leaning(body, 0.5 * whole.NEXT_TO_FLAT, 0.4)
     y[9:13] = 1e-3, 2e-3, 3e-3, 0.0
     mode(s, body.count)
@@ -899,7 +901,7 @@ def box_at_wall(friction):
 def test_a_box_that_leans_against_a_smooth_wall_is_held_by_the_moment_of_its_weight():
     """N h = m g a about its foot, as much along the ground, and the whole weight under it."""
     body, y, low, high = box_at_wall(0.0)
-    s, rows = case(), rotation(y)
+    s, rows = memory(), rotation(y)
     n, _ = modes.pick_closed(body, y, rows, limits.AT_REST, s)
     assert n == 4
     found, _ = modes.solve_forces(body, y, rows, (0.0, 0.0, -G), n, limits.AT_REST, s)
@@ -918,7 +920,7 @@ def test_a_box_that_leans_against_a_smooth_wall_is_held_by_the_moment_of_its_wei
 
 def test_a_face_that_tips_as_it_slides_keeps_its_velocities_and_gains_nothing():
     body, s = drum(), shaken(np.random.default_rng(28))
-    for sliding in (forces.SLIDES, forces.STICKS):
+    for sliding in (case.SLIDES, case.STICKS):
         y = upright(body, 0.3)
         y[7:9], y[12] = (0.3, -0.2), 0.5
         before, had = y.copy(), solid.balance(body, y, G)
@@ -967,7 +969,7 @@ def test_a_point_beside_an_edge_lands_where_the_turn_about_the_edge_takes_it():
         step.attempt(body, 0.0, h, y, s)
 
         def height(part, y=y, s=s, body=body, e=e):
-            turned = sum(s.angle[k] * part**k for k in range(forces.HINGE_ORDER + 1))
+            turned = sum(s.angle[k] * part**k for k in range(case.HINGE_ORDER + 1))
             r = attitude(y) @ Rotation.from_rotvec(turned * e).as_matrix()
             at = y[:3] + attitude(y) @ point(body, 3)
             return (at + r @ (point(body, 0) - point(body, 3)))[2]
@@ -993,19 +995,19 @@ def test_the_error_of_a_turn_about_an_edge_is_the_last_term_of_its_velocity():
         error = step.attempt(body, 0.0, h, y, s)
         velocity = np.polynomial.Polynomial(s.angle).deriv() / h
         whole_one, short = velocity(1.0), velocity.cutdeg(velocity.degree() - 1)(1.0)
-        assert velocity.degree() == forces.HINGE_ORDER - 1
+        assert velocity.degree() == case.HINGE_ORDER - 1
         assert error == pytest.approx(abs(whole_one - short), rel=1e-3)
         assert np.linalg.norm(s.new[10:13]) == pytest.approx(abs(whole_one))
 
 
 def test_friction_of_a_flat_face_acts_at_the_mean_distance_of_its_points():
     """Two thirds of the radius of a disc, about its own centre."""
-    body, s = drum(), case()
+    body, s = drum(), memory()
     feet = [3 + 8 * k for k in range(4)]
     mode(s, *feet, slides=1)
-    assert forces.twist_of(body, s) == pytest.approx(2 / 3)
+    assert delassus.twist_of(body, s) == pytest.approx(2 / 3)
     mode(s, *feet[:2], slides=1)
-    assert forces.twist_of(body, s) == 1.0
+    assert delassus.twist_of(body, s) == 1.0
     rng = np.random.default_rng(35)
     body = uneven(rng)
     mode(s, 0, 2, 4, slides=1)
@@ -1019,7 +1021,7 @@ def test_friction_of_a_flat_face_acts_at_the_mean_distance_of_its_points():
     mean = np.hypot(*(drawn[inside] - (0.03, -0.02)).T).mean()
     mine = np.hypot(*CORNERS[[0, 2, 4]].T).mean()
     assert np.hypot(*middle) < 0.1
-    assert forces.twist_of(body, s) * mine == pytest.approx(mean, rel=0.02)
+    assert delassus.twist_of(body, s) * mine == pytest.approx(mean, rel=0.02)
 
 
 @pytest.mark.parametrize(("part", "meets"), [(0.9, True), (1.2, False)])
@@ -1027,7 +1029,7 @@ def test_friction_of_a_flat_face_acts_at_the_mean_distance_of_its_points():
 def test_what_comes_near_and_parts_again_within_a_step_is_looked_at(at, part, meets):
     """A body that turns back at a constant acceleration comes nearer by u h/4 at most."""
     rng, speed, h = np.random.default_rng(36), 0.8, 0.02
-    body, s = uneven(rng, Wall(1.0, 0.0)), case()
+    body, s = uneven(rng, Wall(1.0, 0.0)), memory()
     mode(s)
     corners = [solid.WALLS + k for k in range(body.corners)]
     y = leaning(body, 0.1, 0.3)
@@ -1054,7 +1056,7 @@ def test_a_round_body_that_tips_at_once_balances_its_energy():
     body = drum(off=(0.0, 0.0), radius=0.1)
     body.static = body.kinetic = 5.0
     motion = np.array([[9.0, 2.0, 0.0], [-50.0, 30.0, 60.0], [0.0, 0.0, 0.0]])
-    y, s, out = upright(body), case(), np.zeros(outcome.OUTCOME)
+    y, s, out = upright(body), memory(), np.zeros(outcome.OUTCOME)
     history, peaks = np.zeros((3, 17)), np.zeros((3, 4))
     ground.fill_peaks(motion, peaks)
     whole.integrate(body, motion, peaks, 1.0, DT, G, 0, 1e-9, 1e-6, y, history, out, s)
@@ -1100,7 +1102,7 @@ def test_the_error_of_a_step_about_a_contact_is_the_difference_of_the_pair():
 def test_each_number_that_turns_has_its_part_in_the_error_of_a_step(place):
     """The attitude as it is, angular velocities over their size, both as far as the contact's arm takes them."""
     rng = np.random.default_rng(33)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     mode(s, 2)
     before, off = rng.normal(size=7), np.zeros(7)
     before[:4] /= np.linalg.norm(before[:4])
@@ -1120,7 +1122,7 @@ def test_both_ways_of_stopping_an_edge_share_its_impulse_alike():
     """In closed form about the edge, and as one set of all sets of cones."""
     rng, both = np.random.default_rng(31), 0
     for _ in range(30):
-        body, s = uneven(rng), case()
+        body, s = uneven(rng), memory()
         body.static = body.kinetic = 2.0
         y = leaning(body, 0.1, 0.0)
         mode(s, 1, 2)
@@ -1135,7 +1137,7 @@ def test_both_ways_of_stopping_an_edge_share_its_impulse_alike():
         if stick.stick_alone_or_by_two(body, rows, 2, 0, momentum, s)[0] != 3:
             continue
         expected = np.array(s.impulse[:6])
-        forces.fill_delassus(body, rows, s.which, 2, s.delassus)
+        delassus.fill_delassus(body, rows, s.which, 2, s.delassus)
         problem.fill_edges(body, y, rows, s.which, 2, s)
         assert cones.solve_cones(s, 2, 0)[0] == 3
         assert s.impulse[:6] == pytest.approx(expected, abs=1e-8)
@@ -1151,7 +1153,7 @@ def test_a_body_slides_on_its_face_while_the_centre_of_pressure_is_inside():
     """It is ahead of the centre of mass by the coefficient of friction times the height."""
     rng, kept = np.random.default_rng(32), set()
     for _ in range(16):
-        body, s = uneven(rng), case()
+        body, s = uneven(rng), memory()
         # the principal axes upright, so that nothing else turns it
         body.inertia = np.diag(np.diag(body.inertia))
         body.inverse = np.linalg.inv(body.inertia)
@@ -1174,14 +1176,14 @@ def test_a_body_slides_on_its_face_while_the_centre_of_pressure_is_inside():
         if stays:
             assert modes.choose_mode(body, 0.0, y, s)
             assert (s.count, s.rests) == (4, 0)
-            assert (s.slides[:4] == forces.SLIDES).all()
+            assert (s.slides[:4] == case.SLIDES).all()
     assert kept == {True, False}
 
 
 def test_a_round_body_slides_on_its_face_while_friction_cannot_tip_it_over_the_rim():
     """The line of thrust meets the base within the rim whichever way it slides: µ h and the offset are below R."""
     for off in ((0.05, -0.03), (0.06, 0.0), (0.0, 0.06)):
-        body, s = drum(off), case()
+        body, s = drum(off), memory()
         y = upright(body)
         y[7] = 1.0
         load = rest.load_at_rest(body, y, rotation(y), (0.0, 0.0, -G), s)
@@ -1204,7 +1206,7 @@ def test_a_box_that_is_shaken_along_its_side_rocks_as_housner_says(at_rest):
     motion[at_rest : at_rest + pulse.size, 0] = pulse
     peaks, history = np.zeros((len(motion), 4)), np.full((len(motion) + 9, 17), np.nan)
     ground.fill_peaks(motion, peaks)
-    s, y, out = case(), upright(body), np.zeros(outcome.OUTCOME)
+    s, y, out = memory(), upright(body), np.zeros(outcome.OUTCOME)
     whole.integrate(body, motion, peaks, 1.0, dt, G, 5, 1e-8, 1e-6, y, history, out, s)
     radius, alpha = math.hypot(half, height), math.atan2(half, height)
     inertia = tensor[1, 1] + radius**2

@@ -21,6 +21,7 @@ from .plain_space import (
     case,
     cone,
     contacts,
+    delassus,
     engine,
     events,
     face,
@@ -31,6 +32,7 @@ from .plain_space import (
     kernel_body,
     leaning,
     limits,
+    memory,
     mode,
     outcome,
     plain,
@@ -44,6 +46,7 @@ from .plain_space import (
     state,
     step,
     stick,
+    ties,
     uneven,
     whole,
 )
@@ -77,16 +80,16 @@ def test_energy_is_that_of_centre_and_spin():
 
 def test_compliances_and_velocities_of_contacts_are_those_of_their_jacobian():
     rng = np.random.default_rng(3)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     y = state(rng, body)
     rows, which = rotation(y), [4, 1, 2]
     rows_of = np.vstack([jacobian(y, point(body, i)) for i in which])
     for k, i in enumerate(which):
         s.which[k] = s.closed[k] = i
-    forces.fill_delassus(body, rows, s.which, 3, s.delassus)
+    delassus.fill_delassus(body, rows, s.which, 3, s.delassus)
     compliance = rows_of @ inverse_mass(body) @ rows_of.T
     assert s.delassus[:9, :9] == pytest.approx(compliance, abs=1e-12)
-    forces.fill_velocities(body, y, rows, s.which, 3, s.free)
+    delassus.fill_velocities(body, y, rows, s.which, 3, s.free)
     assert s.free[:9] == pytest.approx(rows_of @ y[7:13], abs=1e-13)
     s.impulse[:9] = rng.normal(0, 1, 9)
     cone.fill_after(s, 3)
@@ -94,15 +97,15 @@ def test_compliances_and_velocities_of_contacts_are_those_of_their_jacobian():
     assert s.after[:9] == pytest.approx(expected, abs=1e-12)
     before = rows_of @ y[7:13]
     for k, i in enumerate(which):
-        forces.push_at(body, y, rows, i, tuple(s.impulse[3 * k : 3 * k + 3]))
+        delassus.push_at(body, y, rows, i, tuple(s.impulse[3 * k : 3 * k + 3]))
     assert rows_of @ y[7:13] - before == pytest.approx(expected - before, abs=1e-12)
-    largest = forces.largest_compliance(s, 3)
+    largest = delassus.largest_compliance(s, 3)
     assert largest == pytest.approx(np.diag(compliance).max())
 
 
 def test_an_edge_of_contacts_has_the_direction_from_one_to_the_other():
     rng = np.random.default_rng(4)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     y = state(rng, body)
     which = [5, 0, 3]
     problem.fill_edges(body, y, rotation(y), which, 3, s)
@@ -117,7 +120,7 @@ def test_an_edge_of_contacts_has_the_direction_from_one_to_the_other():
 def test_of_six_points_that_touch_the_four_that_approach_fastest_are_looked_at():
     rng = np.random.default_rng(5)
     for _ in range(20):
-        body, s = uneven(rng), case()
+        body, s = uneven(rng), memory()
         y = state(rng, body)
         set_down(y, body)
         rows = rotation(y)
@@ -135,7 +138,7 @@ def test_of_six_points_that_touch_the_four_that_approach_fastest_are_looked_at()
 
 
 def test_slips_before_an_impact_have_their_direction():
-    body, s = uneven(np.random.default_rng(6)), case()
+    body, s = uneven(np.random.default_rng(6)), memory()
     s.which[:2] = 0, 1
     s.free[:6] = 3.0, -4.0, -1.0, 1e-6, 1e-6, -1.0
     problem.note_slips(body, 2, s)
@@ -146,7 +149,7 @@ def test_slips_before_an_impact_have_their_direction():
 
 def test_the_margin_of_pressure_is_its_distance_from_the_nearest_edge():
     rng = np.random.default_rng(7)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     s.count, corners = 4, np.array(OUTLINE) - (0.03, -0.02)
     s.closed[:4] = 0, 2, 3, 5
     signs = set()
@@ -168,7 +171,7 @@ def test_the_margin_of_pressure_is_its_distance_from_the_nearest_edge():
 
 def test_rest_is_kept_while_the_line_of_thrust_meets_the_base():
     rng = np.random.default_rng(8)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     y = np.zeros(solid.SIZE)
     y[3] = 1.0
     set_down(y, body)
@@ -189,7 +192,7 @@ def test_rest_is_kept_while_the_line_of_thrust_meets_the_base():
 def test_what_sticks_has_the_accelerations_of_lagranges_equations(closed):
     """M a = f + Jᵀ F with J a + J̇ u = 0 where the mode is closed."""
     rng = np.random.default_rng(9)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     s.field[:6] = rng.normal(0, 2, 6)
     s.field[2] -= G
     y = state(rng, body)
@@ -229,11 +232,11 @@ def test_what_sticks_has_the_accelerations_of_lagranges_equations(closed):
 
 def test_what_slides_is_rubbed_against_its_slip():
     rng = np.random.default_rng(10)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     for closed in ((1,), (1, 2)):
         y = state(rng, body)
         y[7:10] *= 4
-        mode(s, *closed, slides=forces.SLIDES)
+        mode(s, *closed, slides=case.SLIDES)
         gaps.close_gaps(body, y, rotation(y), s)
         contacts.hold(body, y, rotation(y), s)
         rates = np.zeros(solid.SIZE)
@@ -258,7 +261,7 @@ def test_what_slides_is_rubbed_against_its_slip():
 @pytest.mark.parametrize("which", [(2,), (2, 3)])
 def test_an_impact_that_sticks_stops_its_points_by_the_least_momentum(which):
     rng = np.random.default_rng(11)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     body.static = body.kinetic = 20.0
     y = state(rng, body)
     rows = rotation(y)
@@ -279,7 +282,7 @@ def test_an_impact_that_sticks_stops_its_points_by_the_least_momentum(which):
 
 def test_accelerations_of_points_are_those_without_contact():
     rng = np.random.default_rng(12)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     y = state(rng, body)
     r, omega = attitude(y), y[10:13]
     weight = r.T @ np.array([0.5, -1.0, -G])
@@ -294,7 +297,7 @@ def test_accelerations_of_points_are_those_without_contact():
 
 def test_a_wall_is_met_by_the_nearest_corner_at_the_speed_towards_it():
     rng = np.random.default_rng(13)
-    body, s = uneven(rng, Wall(2.5, 0.7)), case()
+    body, s = uneven(rng, Wall(2.5, 0.7)), memory()
     y = state(rng, body)
     y[2] += 1.0
     r, rows = attitude(y), rotation(y)
@@ -323,7 +326,7 @@ def test_a_wall_is_met_by_the_nearest_corner_at_the_speed_towards_it():
 def test_a_tie_pulls_from_its_knot_to_its_anchor_by_stretch_and_rate():
     rng = np.random.default_rng(14)
     tie = Tie((0.1, 0.0, 1.0), (1.0, 0.2, 1.1), 5e3, damping=40.0, slack=0.01)
-    body, s = uneven(rng, tie), case()
+    body, s = uneven(rng, tie), memory()
     for _ in range(6):
         y = state(rng, body)
         r, knot = attitude(y), np.array(body.knot[0])
@@ -335,10 +338,10 @@ def test_a_tie_pulls_from_its_knot_to_its_anchor_by_stretch_and_rate():
         natural = math.dist((0.1, 0.0, 1.0), (1.0, 0.2, 1.1)) + 0.01
         size = 5e3 * (length - natural) + 40.0 * rate if length > natural else 0.0
         pull = max(size, 0.0) * way
-        forces.fill_tie_forces(body, y, rotation(y), s)
+        ties.fill_tie_forces(body, y, rotation(y), s)
         assert r @ s.pulled == pytest.approx(pull, abs=1e-9)
         assert s.twisted == pytest.approx(np.cross(knot, r.T @ pull), abs=1e-9)
-        margin = forces.tie_margin(body, length, rate, 0)
+        margin = ties.tie_margin(body, length, rate, 0)
         stretch = length - natural
         assert margin == pytest.approx(min(stretch, stretch + 40.0 * rate / 5e3))
 
@@ -359,8 +362,8 @@ def test_a_tie_is_beyond_its_other_state_exactly_where_it_bears_something(bracke
     for _ in range(200):
         length = body.natural[0] + rng.uniform(-0.1, 0.05)
         rate = rng.normal(0, 3.0)
-        force = forces.tie_force(body, length, rate, 0)
-        assert (forces.tie_margin(body, length, rate, 0) > 0) == (force != 0)
+        force = ties.tie_force(body, length, rate, 0)
+        assert (ties.tie_margin(body, length, rate, 0) > 0) == (force != 0)
         told.add(int(np.sign(force)))
     assert told == ({-1, 0, 1} if bracket else {0, 1})
 
@@ -386,7 +389,7 @@ def test_contacts_that_may_be_are_those_of_the_ground_and_of_each_corner_with_ea
 
 
 def test_a_body_slides_if_any_of_its_contacts_does():
-    s = case()
+    s = memory()
     for slides in ((), (0,), (1,), (0, 1), (1, 0), (0, 0, 1)):
         mode(s, *range(len(slides)))
         s.slides[: len(slides)] = slides
@@ -438,7 +441,7 @@ def test_a_fall_is_certain_only_beyond_all_that_the_ground_may_still_do():
 
 def test_a_fall_is_over_contacts_with_the_ground():
     """A corner that touches a wall is closed too, and is no vertex of the base."""
-    y, s, out = np.zeros(solid.SIZE), case(), np.zeros(outcome.OUTCOME)
+    y, s, out = np.zeros(solid.SIZE), memory(), np.zeros(outcome.OUTCOME)
     y[3] = 1.0
     wall = solid.WALLS + 1
     for closed, expected in (
@@ -500,7 +503,7 @@ def test_a_round_body_touches_at_its_lowest_point_which_goes_round_as_the_axis_d
 )
 def test_a_body_falls_over_what_is_on_the_ground_whatever_wall_it_touches(closed, said):
     """Corners at walls have numbers from 1000 on: a body fell over "vertex 1008"."""
-    body, s, out = uneven(np.random.default_rng(3)), case(), np.zeros(outcome.OUTCOME)
+    body, s, out = uneven(np.random.default_rng(3)), memory(), np.zeros(outcome.OUTCOME)
     s.count = len(closed)
     s.closed[: s.count] = closed
     outcome.note_fall(state(np.random.default_rng(4), body), s, 1.0, out)

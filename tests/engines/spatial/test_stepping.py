@@ -13,7 +13,7 @@ from .plain_space import (
     Tie,
     Wall,
     attitude,
-    forces,
+    case,
     inverse_mass,
     jacobian,
     limits,
@@ -169,8 +169,8 @@ def test_after_a_step_what_was_pressed_touches_and_nothing_lies_behind_its_wall(
                 touching += 1
         pressed = [int(s.near[k]) for k in range(n) if s.shove[k, 2] > 0]
         stepping.close_pressed(body, y, n, s)
-        assert s.closed[: s.count].tolist() == pressed[: forces.MOST]
-        assert (s.slides[: s.count] == forces.SLIDES).all()
+        assert s.closed[: s.count].tolist() == pressed[: case.MOST]
+        assert (s.slides[: s.count] == case.SLIDES).all()
     assert touching > 12
 
 

@@ -21,6 +21,7 @@ from .plain_space import (
     attitude,
     case,
     contacts,
+    delassus,
     forces,
     gaps,
     inverse_mass,
@@ -28,6 +29,7 @@ from .plain_space import (
     kernel_body,
     leaning,
     limits,
+    memory,
     mode,
     modes,
     plain,
@@ -128,7 +130,7 @@ def test_each_component_has_its_part_in_the_error_of_a_step(place):
     disc = RigidBody(1.0, np.diag([0.1, 0.1, 0.02]), (0.0, 0.0, 0.4), Circle(0.2), 0.8)
     rim = plain(kernel_body(System((disc,), (Contact(),))))
     for body, leans in ((uneven(rng), 1.0), (rim, 1e3 * 1e-4 + 1e-4)):
-        s, y = case(), leaning(body, 1e-4, 0.4)
+        s, y = memory(), leaning(body, 1e-4, 0.4)
         y[:3], y[7:13] = rng.normal(0, 3, 3), rng.normal(0, 3, 6)
         s.slopes[:, place] = rng.normal(size=7)
         off = abs(h * (RK45.E @ s.slopes[:, place]))
@@ -140,7 +142,7 @@ def test_edges_lie_between_contacts_of_one_surface():
     """Along the ground or one wall; between two surfaces there is none to split an impulse along."""
     rng = np.random.default_rng(64)
     body = uneven(rng, Wall(2.5, 0.0), Wall(2.5, 1.9))
-    s, y = case(), state(rng, body)
+    s, y = memory(), state(rng, body)
     first = [i for i in solid.wall_candidates(body) if solid.may_meet(body, i)]
     of_wall = [[i for i in first if solid.wall_of(i) == w] for w in (0, 1)]
     which = (1, 4, *of_wall[0][:1], of_wall[0][3], *of_wall[1][:1])
@@ -202,7 +204,7 @@ def test_both_ends_of_an_edge_bear_the_same_part_of_what_they_could_along_it():
 
 def struck(rng, touch, mu):
     """A body some of whose points touch and approach, with its small system of contacts."""
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     body.static = body.kinetic = mu
     y = state(rng, body)
     if len(touch) > 2:
@@ -279,13 +281,13 @@ def test_the_margin_of_a_face_that_slides_is_of_its_pressure_or_its_fastest_poin
         s.slip[:4] = (0.6, -0.8)
         r = attitude(y)
         arms = np.array([point(body, i) for i in closed])
-        arms[:, :2] *= forces.twist_of(body, s)
+        arms[:, :2] *= delassus.twist_of(body, s)
         slips = np.array([jacobian(y, arm)[:2] @ y[7:13] for arm in arms])
         fastest, forwards = np.hypot(*slips.T).max(), (slips @ (0.6, -0.8)).max()
         slip = fastest - limits.AT_REST if armed else forwards + step.BACKWARD
         assert step.face_slip(body, y, rotation(y), s) == pytest.approx(slip)
         pressed = s.lam[:4, 2] @ arms[:, :2] / s.lam[:4, 2].sum()
-        pressed /= forces.twist_of(body, s)
+        pressed /= delassus.twist_of(body, s)
         corners = np.array([point(body, i)[:2] for i in range(6)])
         edges = np.roll(corners, -1, axis=0) - corners
         normals = np.stack([-edges[:, 1], edges[:, 0]], axis=1)
@@ -302,7 +304,7 @@ def test_the_margin_of_a_face_that_slides_is_of_its_pressure_or_its_fastest_poin
 def test_what_jams_is_stopped_and_sticks_where_it_is():
     rng = np.random.default_rng(61)
     for closed in ((2,), (1, 2), (0, 2, 4)):
-        body, s = uneven(rng), case()
+        body, s = uneven(rng), memory()
         y = state(rng, body)
         if len(closed) > 2:
             set_down(y, body)
@@ -311,7 +313,7 @@ def test_what_jams_is_stopped_and_sticks_where_it_is():
         assert (s.jammed, s.count) == (1, len(closed))
         r = attitude(y)
         for k, i in enumerate(closed):
-            assert s.slides[k] == forces.STICKS
+            assert s.slides[k] == case.STICKS
             assert jacobian(y, point(body, i)) @ y[7:13] == pytest.approx(0, abs=1e-8)
             assert s.anchor[k] == pytest.approx((y[:3] + r @ point(body, i))[:2])
 
@@ -320,7 +322,7 @@ def test_a_step_that_is_forced_goes_on_as_the_motion_is_and_is_counted():
     """In flight, by a parabola, at most to the end of the interval."""
     rng = np.random.default_rng(62)
     for left in (1.0, 0.3):
-        body, s = uneven(rng), case()
+        body, s = uneven(rng), memory()
         y = state(rng, body)
         y[3:7] *= 1.001
         y[10:13] = 0.0
@@ -340,7 +342,7 @@ def test_a_step_that_is_forced_goes_on_as_the_motion_is_and_is_counted():
 def small_system(rng, mu=0.4):
     """Three contacts of a body, one of which slips a given way, with trial impulses."""
     body, _, rows, _, s = struck(rng, (0, 2, 4), mu)
-    forces.fill_delassus(body, rows, s.which, 3, s.delassus)
+    delassus.fill_delassus(body, rows, s.which, 3, s.delassus)
     s.grip[:3] = rng.uniform(0.2, 0.9, 3)
     s.given[1], s.way[1] = 1, (0.6, -0.8)
     x = rng.normal(0, 1, 12)
@@ -518,7 +520,7 @@ def test_a_contact_that_slips_a_given_way_is_rubbed_against_it():
 
 
 def test_shears_are_shortened_to_what_friction_allows_and_none_is_left_under_a_pull():
-    s = case()
+    s = memory()
     s.friction[:4], s.holds[:4], s.slid[:4] = 0.3, 0.5, (0, 1, 0, 0)
     s.impulse[:12] = 0.6, -0.8, 0.01, 0.6, -0.8, 0.01, 0.6, -0.8, -0.5, 0.01, 0.0, 2.0
     cones.shorten_to_cones(s, 4, 0b1111)
@@ -532,7 +534,7 @@ def test_where_two_sets_of_contacts_would_do_this_is_counted(monkeypatch):
     rng = np.random.default_rng(17)
     body = uneven(rng)
     for solutions in (0, 1, 2):
-        s, y = case(), leaning(body, 0.3, 0.4)
+        s, y = memory(), leaning(body, 0.3, 0.4)
         y[2] += 0.1
         solved = (-1 if solutions == 0 else 0, solutions)
         monkeypatch.setattr(modes, "solve_forces", lambda *_, solved=solved: solved)
@@ -546,7 +548,7 @@ def test_a_rim_that_stops_at_its_lowest_point_stops_there():
     tensor = np.diag([across, across, 0.02])
     rim = RigidBody(1.0, tensor, (0.0, 0.0, 0.4), Circle(0.2), 0.8)
     body = plain(kernel_body(System((rim,), (Contact(),))))
-    rng, s = np.random.default_rng(15), case()
+    rng, s = np.random.default_rng(15), memory()
     y = state(rng, body)
     rows, before = rotation(y), y[7:13].copy()
     lowest = np.array(solid.arm(body, rows[2], body.count))
@@ -560,7 +562,7 @@ def test_a_rim_that_stops_at_its_lowest_point_stops_there():
 
 def test_a_mode_is_read_off_the_impulses_that_were_found():
     """What pushes is closed; it slides where it slips and its shear is all that its friction gives."""
-    body, s = uneven(np.random.default_rng(11)), case()
+    body, s = uneven(np.random.default_rng(11)), memory()
     y = leaning(body, 0.0, 0.0)
     s.which[:3], s.grip[:3] = (5, 2, 4), 0.5
     s.impulse[:9] = 0.0, 0.0, 0.0, -0.3, 0.4, 1.0, 0.1, 0.0, 1.0
@@ -568,7 +570,7 @@ def test_a_mode_is_read_off_the_impulses_that_were_found():
     contacts.write_mode(body, y, rotation(y), 3, 0b110, s)
     assert s.count == 2
     assert s.closed[:2].tolist() == [2, 4]
-    assert s.slides[:2].tolist() == [forces.SLIDES, forces.STICKS]
+    assert s.slides[:2].tolist() == [case.SLIDES, case.STICKS]
     assert s.direction[0] == pytest.approx((0.6, -0.8))
     corners = np.array([point(body, i)[:2] for i in (2, 4)])
     assert s.anchor[:2] == pytest.approx(corners)
@@ -576,7 +578,7 @@ def test_a_mode_is_read_off_the_impulses_that_were_found():
 
 
 def test_where_a_mode_comes_again_what_is_furthest_from_consistent_is_changed():
-    body, s = uneven(np.random.default_rng(12)), case()
+    body, s = uneven(np.random.default_rng(12)), memory()
     body.static = 0.5
     pushes = np.array([(0.1, 0.0, 0.5), (0.6, -0.8, 1.0), (0.0, 0.3, -0.2)])
     for what, left, slides in (
@@ -605,7 +607,7 @@ def test_where_a_mode_comes_again_what_is_furthest_from_consistent_is_changed():
 
 def test_accelerations_under_forces_that_were_found_are_newtons_and_eulers():
     rng = np.random.default_rng(13)
-    body, s = uneven(rng), case()
+    body, s = uneven(rng), memory()
     y = state(rng, body)
     r = attitude(y)
     s.which[:2] = 1, 4
@@ -699,7 +701,7 @@ def test_a_body_lies_flat_only_where_it_neither_leans_nor_turns_nor_rises(place,
 
 def test_a_wall_and_the_friction_of_a_foot_share_what_neither_bears_alone():
     """A point that stands before a smooth wall and is driven into it: friction bears 0.5 of 9.81 of 12."""
-    s = plain(np.zeros((), forces.CASE))
+    s = plain(np.zeros((), case.CASE))
     s.which[:2] = 0, solid.WALLS
     s.given[1], s.way[1, 0] = 1, 1.0
     s.holds[0] = s.friction[0] = 0.5

@@ -14,9 +14,9 @@ from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.pure_rocking.kernels.roots import narrowed
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _contacts as contacts
 from rockfrag.engines.spatial import _face as face
-from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _rest as rest
@@ -42,7 +42,7 @@ def rest_ends(body, y, s, tau, dt):
     its zero is found by false position.
     """
     field = s.field
-    gravity = forces.effective_gravity_at(field, dt)
+    gravity = case.effective_gravity_at(field, dt)
     level = algebra.norm(gravity[0], gravity[1])
     upright = level * body.height < -gravity[2] * body.nearest * (1 - NO_MARGIN)
     rows = algebra.rotation(y)
@@ -53,7 +53,7 @@ def rest_ends(body, y, s, tau, dt):
     below = rest.rest_margin(body, y, rows, gravity, s)
     if below >= 0:
         return -1.0
-    above = rest.rest_margin(body, y, rows, forces.effective_gravity_at(field, tau), s)
+    above = rest.rest_margin(body, y, rows, case.effective_gravity_at(field, tau), s)
     if above <= 0:
         return tau
     bracket = (tau, above, dt, below, 0)
@@ -61,7 +61,7 @@ def rest_ends(body, y, s, tau, dt):
         low, above, high, below, _ = bracket
         middle = (low * below - high * above) / (below - above)
         value = rest.rest_margin(
-            body, y, rows, forces.effective_gravity_at(field, middle), s
+            body, y, rows, case.effective_gravity_at(field, middle), s
         )
         bracket = narrowed(bracket, middle, value)
         if abs(value) < 1e-14:
@@ -79,10 +79,10 @@ def leave_rest(body, y, tau, s):
     share.
     """
     rows = algebra.rotation(y)
-    gravity = forces.effective_gravity_at(s.field, tau)
+    gravity = case.effective_gravity_at(s.field, tau)
     load = rest.load_at_rest(body, y, rows, gravity, s)
     gravity = load.force
-    small = NO_MARGIN * s.field[forces.GRAVITY]
+    small = NO_MARGIN * s.field[case.GRAVITY]
     s.rests = 0
     jumps = load.tied or rest.standing_margin(body, y, rows, load) < -small
     if jumps or rest.grip_margin(body, load) < small:
@@ -131,8 +131,8 @@ def add_edge(body, y, rows, gravity, i, j, small, s):
         return
     if s.count == 0:
         s.closed[0], s.closed[1] = i, j
-        s.slides[0] = forces.STICKS
-        s.slides[1] = forces.STICKS
+        s.slides[0] = case.STICKS
+        s.slides[1] = case.STICKS
         s.count = 2
     else:
         shared = i if i in (s.closed[0], s.closed[1]) else j

@@ -26,17 +26,19 @@ from rockfrag.engines.algebra.vectors import (
     substitute,
 )
 from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.spatial._forces import (
+from rockfrag.engines.spatial._case import (
     MOST,
     in_set,
-    largest_compliance,
     picks_wall,
+)
+from rockfrag.engines.spatial._delassus import largest_compliance
+from rockfrag.engines.spatial._relax import relax, velocity_after
+from rockfrag.engines.spatial._stick import speed_to_stop
+from rockfrag.engines.spatial._together import (
     push_by_two,
     stick_together,
     stop_at,
 )
-from rockfrag.engines.spatial._relax import relax, velocity_after
-from rockfrag.engines.spatial._stick import speed_to_stop
 
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
 """Sets of four contacts as bits, the smallest first."""

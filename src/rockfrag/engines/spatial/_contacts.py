@@ -14,6 +14,9 @@ Names (``_body`` explains the state and the numbers of contacts):
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
+from rockfrag.engines.spatial import _closed_forms as closed
+from rockfrag.engines.spatial import _delassus as delassus
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _limits as limits
 
@@ -25,8 +28,8 @@ NO_SLIP, AT_LIMIT = 1e-12, 1 - 1e-9
 @kernel
 def kind_of_mode(s):
     """PIVOT or HINGE of a mode in which nothing is closed but one point or two that stick, or else GENERAL."""
-    kind = forces.kind_of(s)
-    return kind if kind in (forces.PIVOT, forces.HINGE) else forces.GENERAL
+    kind = case.kind_of(s)
+    return kind if kind in (case.PIVOT, case.HINGE) else case.GENERAL
 
 
 @kernel
@@ -40,15 +43,15 @@ def hold(body, y, rows, s):
     if n == 0:
         return
     kind = kind_of_mode(s)
-    if kind != forces.GENERAL:
+    if kind != case.GENERAL:
         hold_still(body, y, rows, kind, s)
         return
-    twist = forces.twist_of(body, s)
-    forces.fill_velocities(body, y, rows, s.closed, n, s.free, twist)
+    twist = delassus.twist_of(body, s)
+    delassus.fill_velocities(body, y, rows, s.closed, n, s.free, twist)
     forces.solve_general(body, y, rows, n, False, s)
     for i in range(n):
         push = (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2])
-        forces.push_at(body, y, rows, s.closed[i], push, twist)
+        delassus.push_at(body, y, rows, s.closed[i], push, twist)
 
 
 @kernel
@@ -61,10 +64,10 @@ def hold_still(body, y, rows, kind, s):
     velocity = algebra.to_body(rows, solid.centre_velocity(y))
     momentum = algebra.times(body.inertia, solid.omega_of(y))
     i = s.closed[0]
-    if kind == forces.PIVOT:
-        turn, push = forces.stop_point(body, rows[2], i, velocity, momentum)
+    if kind == case.PIVOT:
+        turn, push = closed.stop_point(body, rows[2], i, velocity, momentum)
     else:
-        turn, push, _, _, _ = forces.stop_edge(
+        turn, push, _, _, _ = closed.stop_edge(
             body, rows[2], i, s.closed[1], velocity, velocity, momentum, 0.0
         )
     pushed = algebra.to_world(rows, push)
@@ -91,20 +94,20 @@ def write_mode(body, y, rows, n, found, s):
     count = 0
     s.rests = 0
     for i in range(n):
-        if not forces.in_set(found, i):
+        if not case.in_set(found, i):
             continue
         s.closed[count] = s.which[i]
-        s.slides[count] = forces.STICKS
+        s.slides[count] = case.STICKS
         u, v = s.after[3 * i], s.after[3 * i + 1]
         if s.given[i]:
-            s.slides[count] = forces.SLIDES
+            s.slides[count] = case.SLIDES
             s.direction[count, 0], s.direction[count, 1] = s.way[i, 0], s.way[i, 1]
         else:
             shear = algebra.norm(s.impulse[3 * i], s.impulse[3 * i + 1])
             limit = s.grip[i] * s.impulse[3 * i + 2]
             size = algebra.norm(u, v)
             if size > NO_SLIP and shear > limit * AT_LIMIT:
-                s.slides[count] = forces.SLIDES
+                s.slides[count] = case.SLIDES
                 s.direction[count, 0], s.direction[count, 1] = u / size, v / size
                 s.counters[limits.SLIDINGS] += 1
         count += 1
@@ -124,7 +127,7 @@ def insist(body, what, s):
         shear = algebra.norm(s.lam[i, 0], s.lam[i, 1])
         grip = solid.static_of(body, s.closed[i])
         here = s.lam[i, 2] if what == limits.OPENS else grip * s.lam[i, 2] - shear
-        if here < value and (what == limits.OPENS or s.slides[i] == forces.STICKS):
+        if here < value and (what == limits.OPENS or s.slides[i] == case.STICKS):
             worst, value = i, here
     if what == limits.OPENS:
         for i in range(worst, s.count - 1):
@@ -137,7 +140,7 @@ def insist(body, what, s):
         s.count -= 1
     else:
         shear = algebra.norm(s.lam[worst, 0], s.lam[worst, 1])
-        s.slides[worst] = forces.SLIDES
+        s.slides[worst] = case.SLIDES
         for k in range(2):
             s.direction[worst, k] = -s.lam[worst, k] / shear
 
@@ -150,7 +153,7 @@ def jam(body, y, s):
     """
     for i in range(s.count):
         if not solid.is_smooth(body, s.closed[i]):
-            s.slides[i] = forces.STICKS
+            s.slides[i] = case.STICKS
     s.jammed = 1
     anchor_all(body, y, s)
     hold(body, y, algebra.rotation(y), s)

@@ -17,7 +17,9 @@ from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.pure_rocking.kernels.roots import narrowed
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _contacts as contacts
+from rockfrag.engines.spatial import _delassus as delassus
 from rockfrag.engines.spatial import _face as face
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _gaps as gaps
@@ -122,7 +124,7 @@ def guess_landing(body, h, y, below, s):
     for _ in range(5):
         value = above + part * (fall + part * (square + part * cube))
         part -= value / (fall + part * (2.0 * square + part * 3.0 * cube))
-    if step.kind_of_step(body, s) == forces.HINGE:
+    if step.kind_of_step(body, s) == case.HINGE:
         part = hinge.landing(body, y, i, part, 0.5 * limits.TOUCH, s)
     return h * part
 
@@ -153,8 +155,8 @@ def happen(body, what, tau, y, cut, stuck, s):
     that goes on is chosen. ``stuck`` is how many steps in a row had hardly any length: then one contact is changed
     outright.
     """
-    gravity = forces.effective_gravity_at(s.field, tau)
-    before = solid.balance(body, y, s.field[forces.GRAVITY])
+    gravity = case.effective_gravity_at(s.field, tau)
+    before = solid.balance(body, y, s.field[case.GRAVITY])
     if what == limits.LANDS:
         land(body, y, gravity, cut, s)
     elif what == limits.SLIP_ENDS:
@@ -166,13 +168,13 @@ def happen(body, what, tau, y, cut, stuck, s):
     if what == limits.OPENS and body.rim > 0 and s.count >= 3:
         # the centre of pressure has come to the rim, over which the face tips as it slides
         towards_x, towards_y = face.pressure_centre(body, s)
-        rim.tip_over_rim(body, y, towards_x, towards_y, forces.SLIDES, gravity, s)
+        rim.tip_over_rim(body, y, towards_x, towards_y, case.SLIDES, gravity, s)
     elif stuck > SOON_STUCK and what in (limits.OPENS, limits.LEAVES_CONE):
         contacts.insist(body, what, s)
-    elif forces.kind_of(s) != forces.REST:
+    elif case.kind_of(s) != case.REST:
         follow(body, tau, y, gravity, s)
     rim.rim_instead_of_feet(body, y, gravity, s)
-    return before - solid.balance(body, y, s.field[forces.GRAVITY])
+    return before - solid.balance(body, y, s.field[case.GRAVITY])
 
 
 @kernel
@@ -185,7 +187,7 @@ def land(body, y, gravity, cut, s):
         gaps.lay_flat(body, y)
         if problem.is_approached(body, y, s):
             impacts.impact(body, y, gravity, LANDING, s)
-    left = solid.energy(body, y, s.field[forces.GRAVITY])
+    left = solid.energy(body, y, s.field[case.GRAVITY])
     carried = (
         outcome.stands_within_balance(body, rows)
         and rest.rest_margin(body, y, rows, gravity, s) >= 0
@@ -219,11 +221,11 @@ def stop_slips(body, y, s):
     """
     rows = algebra.rotation(y)
     for i in range(s.count):
-        if s.slides[i] == forces.SLIDES:
-            u = forces.slip_of(body, y, rows, i, s)
+        if s.slides[i] == case.SLIDES:
+            u = delassus.slip_of(body, y, rows, i, s)
             slow = algebra.norm(u[0], u[1]) < 2 * limits.AT_REST
             if slow and not solid.is_smooth(body, s.closed[i]):
-                s.slides[i] = forces.STICKS
+                s.slides[i] = case.STICKS
     contacts.hold(body, y, rows, s)
 
 
@@ -232,7 +234,7 @@ def slides_any(s):
     """Whether any closed point slides."""
     found = False
     for i in range(s.count):
-        found = found or s.slides[i] == forces.SLIDES
+        found = found or s.slides[i] == case.SLIDES
     return found
 
 
@@ -245,7 +247,7 @@ def rattle_ends(body, left, s):
     """
     if body.rim > 0.0 or left > RATTLE * body.barrier:
         return False
-    weight = s.field[forces.GRAVITY] - s.soon[1]
+    weight = s.field[case.GRAVITY] - s.soon[1]
     rights = weight * body.nearest - s.soon[0] * body.height
     if rights <= 0.0 or s.soon[0] >= body.static * weight:
         return False

@@ -13,6 +13,8 @@ Names (``_body`` explains the state and the numbers of contacts):
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
+from rockfrag.engines.spatial import _delassus as delassus
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _gaps as gaps
 from rockfrag.engines.spatial import _limits as limits
@@ -79,9 +81,9 @@ def slide_flat(body, y, rows, load, s):
     n = points.pick_feet(body, y, rows, s)
     s.count, s.rests = n, 0
     for i in range(n):
-        s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
+        s.closed[i], s.slides[i] = s.which[i], case.SLIDES
     for i in range(n):
-        u = forces.slip_of(body, y, rows, i, s)
+        u = delassus.slip_of(body, y, rows, i, s)
         p = algebra.to_world(rows, solid.arm(body, rows[2], s.closed[i]))
         x, z = load.force[0] - turns * p[1], load.force[1] + turns * p[0]
         level = max(algebra.norm(x, z), algebra.TINY)

@@ -12,8 +12,9 @@ Names (``_body`` explains the state and the numbers of contacts):
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _contacts as contacts
-from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _delassus as delassus
 
 # compliance of contacts, over the largest of a body, by which gaps at walls are closed [-], and how many times
 GAP_SOFTNESS, CLOSINGS = 1e-3, 3
@@ -27,12 +28,12 @@ def settle(body, y, s):
     the ground and stopped by what is least in kinetic energy.
     """
     rows = algebra.rotation(y)
-    kind = forces.kind_of(s)
-    if kind in (forces.PIVOT, forces.HINGE):
+    kind = case.kind_of(s)
+    if kind in (case.PIVOT, case.HINGE):
         i = s.closed[0]
         p = solid.arm(body, rows[2], i)
         omega = solid.omega_of(y)
-        if kind == forces.HINGE:
+        if kind == case.HINGE:
             q = solid.arm(body, rows[2], s.closed[1])
             e = algebra.minus(q, p)
             omega = algebra.scaled(algebra.dot(e, omega) / algebra.dot(e, e), e)
@@ -43,7 +44,7 @@ def settle(body, y, s):
             x, z = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
             solid.set_place(y, x, z)
         solid.set_velocity(y, algebra.to_world(rows, algebra.cross(p, omega)))
-    elif kind in (forces.GENERAL, forces.SLIDER):
+    elif kind in (case.GENERAL, case.SLIDER):
         close_gaps(body, y, rows, s)
         contacts.hold(body, y, algebra.rotation(y), s)
 
@@ -56,13 +57,13 @@ def close_gaps(body, y, rows, s):
     compliances of both (``docs/space.md``, equation 10). A face is laid flat.
     """
     n = s.count
-    if forces.at_wall(s):
+    if case.at_wall(s):
         close_gaps_at_wall(body, y, s)
         return
     if n >= 3:
         lay_flat(body, y)
         return
-    forces.fill_delassus(body, rows, s.closed, n, s.delassus)
+    delassus.fill_delassus(body, rows, s.closed, n, s.delassus)
     first = solid.gap(body, y, rows[2], s.closed[0])
     if n == 1:
         y[solid.HEIGHT] -= first
@@ -88,8 +89,8 @@ def close_gaps_at_wall(body, y, s):
     n = s.count
     for _ in range(CLOSINGS):
         rows = algebra.rotation(y)
-        forces.fill_delassus(body, rows, s.closed, n, s.delassus)
-        soft = GAP_SOFTNESS * forces.largest_compliance(s, n)
+        delassus.fill_delassus(body, rows, s.closed, n, s.delassus)
+        soft = GAP_SOFTNESS * delassus.largest_compliance(s, n)
         for i in range(n):
             for j in range(n):
                 s.matrix[i, j] = s.delassus[3 * i + 2, 3 * j + 2]
@@ -109,7 +110,7 @@ def shift_at(body, y, rows, i, size):
     ``size`` is that of the impulse for a unit of mass, in a unit of time a length [m].
     """
     p = solid.arm(body, rows[2], i)
-    push = algebra.scaled(size, forces.push_along(body, rows, i, 2))
+    push = algebra.scaled(size, delassus.push_along(body, rows, i, 2))
     moved = algebra.to_world(rows, push)
     for k in range(3):
         y[k] += moved[k]

@@ -6,7 +6,7 @@ extremes. Theory: ``docs/space.md``, "Steps".
 
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _case as case
 
 # intervals that a body at rest passes at once where the ground cannot move it
 WINDOW = 16
@@ -24,7 +24,7 @@ def set_field(field, acceleration, k, scale, dt, g):
         then = scale * acceleration[k + 1, i] if k < last else 0.0
         field[i], field[3 + i] = -now, -(then - now) / dt
     field[2] -= g
-    field[forces.GRAVITY] = g
+    field[case.GRAVITY] = g
 
 
 @kernel

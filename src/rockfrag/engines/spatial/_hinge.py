@@ -24,9 +24,10 @@ from rockfrag.engines.algebra.vectors import (
 )
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _case as case
+from rockfrag.engines.spatial import _closed_forms as closed
 
-ORDER = forces.HINGE_ORDER
+ORDER = case.HINGE_ORDER
 
 
 @kernel
@@ -37,11 +38,11 @@ def attempt(body, tau, h, y, s):
     the step [s].
     """
     rows = rotation(y)
-    edge = forces.edge_of(body, rows[2], s)
+    edge = closed.edge_of(body, rows[2], s)
     p, e, _ = edge
     inertia = dot(e, times(body.about[s.closed[0]], e))
     field = s.field
-    weight = to_body(rows, forces.effective_gravity_at(field, tau))
+    weight = to_body(rows, case.effective_gravity_at(field, tau))
     rate = scaled(h, to_body(rows, (field[3], field[4], field[5])))
     # arms about the edge, as it is and after a quarter of a turn: e × d and (d·e) e - d of equation 8, with d = -p
     upright = cross(p, e)
@@ -56,12 +57,12 @@ def attempt(body, tau, h, y, s):
     )
     angle, speed = sums(s)
     rows = write_state(y, e, p, (angle, speed / h), s)
-    lifted = s.field[forces.GRAVITY] * (s.new[solid.HEIGHT] - y[solid.HEIGHT])
+    lifted = s.field[case.GRAVITY] * (s.new[solid.HEIGHT] - y[solid.HEIGHT])
     # the work of the moment is what the energy of the turn has grown by
     work = 0.5 * inertia * (speed * speed - started * started) / (h * h)
     s.new[solid.WORK] = y[solid.WORK] + work + lifted
-    weight = to_body(rows, forces.effective_gravity_at(field, tau + h))
-    forces.edge_forces(body, rows, edge, speed / h, weight, s)
+    weight = to_body(rows, case.effective_gravity_at(field, tau + h))
+    closed.edge_forces(body, rows, edge, speed / h, weight, s)
     return abs(s.angle[ORDER]) * ORDER / h
 
 
@@ -108,7 +109,7 @@ def landing(body, y, i, part, below, s):
     the edge is at the height (d·e)(e·k) + [d - (d·e) e]·k cos ϑ + (e × d)·k sin ϑ over it, with k upwards.
     """
     up = rotation(y)[2]
-    p, e, _ = forces.edge_of(body, up, s)
+    p, e, _ = closed.edge_of(body, up, s)
     d = minus(solid.arm(body, up, i), p)
     level = dot(d, e) * dot(e, up)
     upright, turned = dot(d, up) - level, dot(cross(e, d), up)

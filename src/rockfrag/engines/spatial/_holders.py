@@ -13,8 +13,9 @@ import math
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _rest as rest
+from rockfrag.engines.spatial import _ties as ties
 
 
 @kernel
@@ -28,15 +29,15 @@ def begin_holding(body, y, s):
     for i in range(body.constraints):
         s.broken[i] = s.taut[i] = 0
         if body.ties[i]:
-            _, length, rate = forces.stretch_of(body, y, rows, i)
-            s.taut[i] = forces.tie_margin(body, length, rate, i) > 0.0
+            _, length, rate = ties.stretch_of(body, y, rows, i)
+            s.taut[i] = ties.tie_margin(body, length, rate, i) > 0.0
 
 
 @kernel
 def note_bond(body, y, tau, s):
     """Keep the largest tension of a side of the bond, at ``tau`` [N/kg]: at most half of what the bond holds."""
     rows = algebra.rotation(y)
-    pulled = rest.bond_tension(body, rows, forces.effective_gravity_at(s.field, tau))
+    pulled = rest.bond_tension(body, rows, case.effective_gravity_at(s.field, tau))
     s.force[solid.BOND] = max(s.force[solid.BOND], min(pulled, 0.5 * body.tension))
 
 
@@ -57,8 +58,8 @@ def note_forces(body, y, s):
             continue
         if s.broken[i]:
             continue
-        _, length, rate = forces.stretch_of(body, y, rows, i)
-        s.force[i] = max(s.force[i], abs(forces.tie_force(body, length, rate, i)))
+        _, length, rate = ties.stretch_of(body, y, rows, i)
+        s.force[i] = max(s.force[i], abs(ties.tie_force(body, length, rate, i)))
 
 
 @kernel
@@ -68,10 +69,10 @@ def turn_ties(body, y, tau, breaks, s):
     for i in range(body.constraints):
         if not body.ties[i] or s.broken[i]:
             continue
-        _, length, rate = forces.stretch_of(body, y, rows, i)
-        value = forces.tie_margin(body, length, rate, i)
+        _, length, rate = ties.stretch_of(body, y, rows, i)
+        value = ties.tie_margin(body, length, rate, i)
         if breaks:
-            force = abs(forces.tie_force(body, length, rate, i))
+            force = abs(ties.tie_force(body, length, rate, i))
             if force >= body.strength[i] * (1.0 - 1e-6):
                 s.broken[i], s.breaks[i] = 1, s.began + tau
                 s.force[i] = body.strength[i]

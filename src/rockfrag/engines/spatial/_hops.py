@@ -16,9 +16,11 @@ import math
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
+from rockfrag.engines.spatial import _closed_forms as closed
 from rockfrag.engines.spatial import _contacts as contacts
-from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _limits as limits
+from rockfrag.engines.spatial import _ties as ties
 
 # hops of one end of an edge beside the other: speed above which they are followed [m/s]; part by which each is
 # slower than the one before, at least [-]; and what closing them may change of the body's angular velocity [rad/s]
@@ -39,13 +41,13 @@ def keep_slow_contacts(body, y, rows, gravity, n, found, closes, s):
         hops = hopping(body, y, rows, gravity, n, found, s)
     for i in range(n):
         leaving = s.after[3 * i + 2]
-        if forces.in_set(found, i) or leaving < s.close or i == hops:
-            slow = slow or not forces.in_set(found, i)
+        if case.in_set(found, i) or leaving < s.close or i == hops:
+            slow = slow or not case.in_set(found, i)
             s.closed[count] = s.which[i]
             slip = algebra.norm(s.after[3 * i], s.after[3 * i + 1])
             slides = slip > max(s.close, limits.AT_REST) and i != hops
             slides = slides or solid.is_smooth(body, s.which[i])
-            s.slides[count] = forces.SLIDES if slides else forces.STICKS
+            s.slides[count] = case.SLIDES if slides else case.STICKS
             count += 1
     s.count, s.rests = count, 0
     if slow:
@@ -84,10 +86,10 @@ def chatters(body, y, rows, gravity, i, k, leaving, s):
     if leaving > FASTEST_HOP:
         return False
     up, omega = rows[2], solid.omega_of(y)
-    weight = forces.load_on(body, y, rows, gravity, s)
+    weight = ties.load_on(body, y, rows, gravity, s)
     here, there = s.which[i], s.which[k]
     p, turned = solid.arm_and_bias(body, up, omega, here)
-    alpha, force = forces.pivot_acceleration(body, p, turned, omega, weight, here, s)
+    alpha, force = closed.pivot_acceleration(body, p, turned, omega, weight, here, s)
     q = solid.arm(body, up, there)
     # acceleration of the far end while the body pivots
     far = algebra.plus(weight, solid.bias(body, up, omega, q, there))
@@ -97,6 +99,6 @@ def chatters(body, y, rows, gravity, i, k, leaving, s):
         return False
     edge = algebra.minus(q, p)
     length = math.sqrt(algebra.dot(edge, edge))
-    g = s.field[forces.GRAVITY]
+    g = s.field[case.GRAVITY]
     left_out = leaving**3 * g / (SLOWING * falls**2 * length * body.height)
     return left_out < CHATTER

@@ -15,8 +15,9 @@ Names (``_body`` explains the state and the numbers of contacts):
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _contacts as contacts
-from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _delassus as delassus
 from rockfrag.engines.spatial import _hops as hops
 from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _points as points
@@ -43,7 +44,7 @@ def impact(body, y, gravity, least, s):
     before = solid.centre_velocity(y)
     n = points.touching(body, y, rows, s)
     momentum = stick.fill_velocities(body, y, rows, n, s)
-    if forces.picks_wall(n, s):
+    if case.picks_wall(n, s):
         impact_at_wall(body, y, rows, gravity, n, least, s)
         return
     problem.note_slips(body, n, s)
@@ -52,7 +53,7 @@ def impact(body, y, gravity, least, s):
         return
     for i in range(n):
         push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
-        forces.push_at(body, y, rows, s.which[i], push)
+        delassus.push_at(body, y, rows, s.which[i], push)
     pushed = (solid.centre_velocity(y), solid.omega_of(y))
     # what chatters is closed, but followed where it would slip
     for closes in (True, False):
@@ -72,7 +73,7 @@ def impact_at_wall(body, y, rows, gravity, n, least, s):
     through fastest takes the place of the one that is least needed.
     """
     came = (solid.centre_velocity(y), solid.omega_of(y))
-    before = solid.energy(body, y, s.field[forces.GRAVITY])
+    before = solid.energy(body, y, s.field[case.GRAVITY])
     found, solutions = -1, 0
     for _ in range(problem.TAKEN_IN):
         found, solutions = bounce_without_gain(body, y, rows, n, least, came, before, s)
@@ -106,7 +107,7 @@ def is_solved(body, y, rows, n, found, solutions, s):
     s.counters[limits.UNSOLVED] += 1
     for i in range(n):
         smooth = solid.is_smooth(body, s.which[i])
-        s.slides[i] = forces.SLIDES if smooth else forces.STICKS
+        s.slides[i] = case.SLIDES if smooth else case.STICKS
         s.closed[i] = s.which[i]
     s.count, s.rests = n, 0
     contacts.hold(body, y, rows, s)
@@ -128,8 +129,8 @@ def bounce_without_gain(body, y, rows, n, least, came, before, s):
         found, solutions = bounce(body, y, rows, n, least, part, s)
         if found < 0:
             break
-        gained = solid.energy(body, y, s.field[forces.GRAVITY]) - before
-        if gained <= ROUNDING * (before + s.field[forces.GRAVITY] * body.height):
+        gained = solid.energy(body, y, s.field[case.GRAVITY]) - before
+        if gained <= ROUNDING * (before + s.field[case.GRAVITY] * body.height):
             break
         part *= 0.5
     return found, solutions
@@ -142,21 +143,21 @@ def bounce(body, y, rows, n, least, part, s):
     A wall with the ratio e asks for u_n⁺ ≥ -e u_n⁻: e u_n⁻ is added to the velocity that is stopped. ``part`` is
     what all ratios are multiplied by. s.after gets the velocities as they are after the impact.
     """
-    forces.fill_velocities(body, y, rows, s.which, n, s.free)
+    delassus.fill_velocities(body, y, rows, s.which, n, s.free)
     problem.note_slips(body, n, s)
     for i in range(n):
         if s.which[i] >= solid.WALLS:
             ratio = part * body.ratio[solid.wall_of(s.which[i])]
             s.free[3 * i + 2] += ratio * min(s.free[3 * i + 2], 0.0)
-    forces.fill_delassus(body, rows, s.which, n, s.delassus)
+    delassus.fill_delassus(body, rows, s.which, n, s.delassus)
     problem.fill_edges(body, y, rows, s.which, n, s)
     found, solutions = solve_cones(s, n, least)
     for i in range(n if found >= 0 else 0):
         push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
-        forces.push_at(body, y, rows, s.which[i], push)
+        delassus.push_at(body, y, rows, s.which[i], push)
     if found >= 0:
         # how contacts really part: those of a wall by its ratio too
-        forces.fill_velocities(body, y, rows, s.which, n, s.after)
+        delassus.fill_velocities(body, y, rows, s.which, n, s.after)
     return found, solutions
 
 
@@ -167,7 +168,7 @@ def note_impulses(body, n, found, s):
         whole = 0.0
         for i in range(n):
             at_this = s.which[i] >= solid.WALLS and solid.wall_of(s.which[i]) == w
-            if at_this and forces.in_set(found, i):
+            if at_this and case.in_set(found, i):
                 whole += s.impulse[3 * i + 2]
         if whole > 0.0:
             s.hits[w] += 1.0

@@ -18,6 +18,7 @@ from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import entry_kernel, kernel
 from rockfrag.engines.spatial import _at_rest as at_rest
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _contacts as contacts
 from rockfrag.engines.spatial import _events as events
 from rockfrag.engines.spatial import _forces as forces
@@ -194,7 +195,7 @@ def begin(body, acceleration, scale, dt, g, y, out, s):
         gaps.come_to_rest(body, y, s)
     else:
         modes.choose_mode(body, 0.0, y, s)
-        rim.rim_instead_of_feet(body, y, forces.effective_gravity_at(s.field, 0.0), s)
+        rim.rim_instead_of_feet(body, y, case.effective_gravity_at(s.field, 0.0), s)
     contacts.anchor_all(body, y, s)
 
 
@@ -242,7 +243,7 @@ def cross_interval(
     seen = began
     s.close = limits.CLOSE
     while dt - tau > NO_TIME * dt:
-        if forces.kind_of(s) == forces.REST:
+        if case.kind_of(s) == case.REST:
             tau = wait(body, tau, dt, y, out, s)
             if tau < 0:
                 break
@@ -293,11 +294,11 @@ def wait(body, tau, dt, y, out, s):
     if tau < 0:
         return -1.0
     s.goes_on = 0
-    g = s.field[forces.GRAVITY]
+    g = s.field[case.GRAVITY]
     standing = solid.balance(body, y, g)
     at_rest.leave_rest(body, y, tau, s)
     outcome.note_loss(standing - solid.balance(body, y, g), out)
-    return -1.0 if forces.kind_of(s) == forces.REST else tau
+    return -1.0 if case.kind_of(s) == case.REST else tau
 
 
 @kernel
@@ -308,7 +309,7 @@ def falls(body, y, soon, scale, out, s):
         return True
     rows = algebra.rotation(y)
     outcome.note_peaks(body, y, rows, out)
-    g = s.field[forces.GRAVITY]
+    g = s.field[case.GRAVITY]
     return rows[2][2] <= 0.0 or outcome.fall_is_certain(body, y, rows, soon, scale, g)
 
 
@@ -319,7 +320,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     ``next_step`` is the longest that is tried [s], ``tolerance`` the error allowed to it. Returned are the time in
     the interval, the next step and the length of this one [s].
     """
-    g = s.field[forces.GRAVITY]
+    g = s.field[case.GRAVITY]
     step.begin(body, tau, y, s)
     # equal steps to the end of the interval, where the ground's acceleration has a kink
     h = (dt - tau) / math.ceil((dt - tau) / next_step)
@@ -347,7 +348,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         h, what = events.locate(body, tau, h, y, s)
     else:
         what = limits.NOTHING
-    exact = step.kind_of_step(body, s) != forces.GENERAL
+    exact = step.kind_of_step(body, s) != case.GENERAL
     if exact and body.rim > 0:
         outcome.note_loss(
             solid.balance(body, y, g) - solid.balance(body, s.new, g), out
@@ -368,7 +369,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
             solid.pay(body, y, solid.energy(body, y, g) - before)
         outcome.note_loss(before - solid.energy(body, y, g), out)
     # whether the rates at the end of a step are those at the beginning of the next
-    sticks = forces.kind_of(s) in (forces.FLIGHT, forces.PIVOT, forces.HINGE)
+    sticks = case.kind_of(s) in (case.FLIGHT, case.PIVOT, case.HINGE)
     s.goes_on = exact or (sticks and body.rim == 0.0)
     if body.rim > 0:
         ahead = rim.look_after_rim(body, y, tau + h, cut, ahead, s, out)
@@ -391,7 +392,7 @@ def hardly_moves(body, y, cut):
 @kernel
 def give_up(body, tau, y, s):
     """End a wobble that cannot be followed any more, which counts as a problem; return the energy lost [J/kg]."""
-    before = solid.energy(body, y, s.field[forces.GRAVITY])
+    before = solid.energy(body, y, s.field[case.GRAVITY])
     s.counters[limits.UNSOLVED] += 1
     up = algebra.rotation(y)[2]
     if body.rim > 0 and algebra.norm(up[0], up[1]) < NEXT_TO_FLAT:
@@ -399,7 +400,7 @@ def give_up(body, tau, y, s):
         gaps.lay_flat(body, y)
     if not modes.choose_mode(body, tau, y, s):
         contacts.jam(body, y, s)
-    return before - solid.energy(body, y, s.field[forces.GRAVITY])
+    return before - solid.energy(body, y, s.field[case.GRAVITY])
 
 
 @kernel

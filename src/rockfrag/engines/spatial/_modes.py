@@ -14,15 +14,16 @@ Names (``_body`` explains the state and the numbers of contacts):
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _contacts as contacts
 from rockfrag.engines.spatial import _face as face
-from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _gaps as gaps
 from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _points as points
 from rockfrag.engines.spatial import _problem as problem
 from rockfrag.engines.spatial import _rest as rest
 from rockfrag.engines.spatial import _stick as stick
+from rockfrag.engines.spatial import _ties as ties
 
 # velocity that points slip above where no mode was found otherwise: one may hardly slip [m/s]
 SLOW_SLIP = 30 * limits.AT_REST
@@ -39,7 +40,7 @@ def choose_mode(body, tau, y, s):
     as points that stick. Velocity that the mode forbids is taken away.
     """
     rows = algebra.rotation(y)
-    gravity = forces.effective_gravity_at(s.field, tau)
+    gravity = case.effective_gravity_at(s.field, tau)
     if may_rest(body, y, rows, gravity, s):
         gaps.come_to_rest(body, y, s)
         return True
@@ -120,9 +121,9 @@ def solve_forces(body, y, rows, gravity, n, slow, s):
     through takes the place of the contact that is least needed, until none would be. ``slow`` is the velocity
     above which a contact slips [m/s]. s.impulse gets the forces [N/kg], s.after the accelerations [m/s²].
     """
-    weight = forces.load_on(body, y, rows, gravity, s)
+    weight = ties.load_on(body, y, rows, gravity, s)
     moment = stick.fill_accelerations(body, y, rows, weight, n, s)
-    if not forces.picks_wall(n, s):
+    if not case.picks_wall(n, s):
         return problem.solve(body, y, rows, n, 0, moment, s)
     found, solutions = -1, 0
     for _ in range(problem.TAKEN_IN):
@@ -135,7 +136,7 @@ def solve_forces(body, y, rows, gravity, n, slow, s):
             break
         moves = pushed_by(body, rows, n, weight, moment, s)
         i = problem.missed(
-            body, y, rows, n, moves, problem.MISSED * s.field[forces.GRAVITY], True, s
+            body, y, rows, n, moves, problem.MISSED * s.field[case.GRAVITY], True, s
         )
         at = problem.least_needed(n, found, s)
         if i < 0 or at < 0:

@@ -32,13 +32,13 @@ from rockfrag.engines.pure_rocking.kernels.dormand_prince import (
     WEIGHTS,
 )
 from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial._forces import (
+from rockfrag.engines.spatial._case import (
     ALONG,
     GRAVITY,
     TURNING,
     effective_gravity_at,
-    pivot_acceleration,
 )
+from rockfrag.engines.spatial._closed_forms import pivot_acceleration
 
 
 @inlined_kernel

@@ -16,7 +16,7 @@ from rockfrag.base.elementary import atan2
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _rest as rest
 
@@ -59,11 +59,11 @@ def keep_fastest(i, velocity, n, s):
     kept.
     """
     away = s.vector
-    if n < forces.MOST:
+    if n < case.MOST:
         s.which[n], away[n] = i, velocity
         return n + 1
     slowest = 0
-    for k in range(1, forces.MOST):
+    for k in range(1, case.MOST):
         if away[k] > away[slowest]:
             slowest = k
     if velocity < away[slowest] - AS_FAST:
@@ -85,11 +85,11 @@ def stand_on_feet(body, y, rows, s):
         now = (s.field[0], s.field[1], s.field[2])
         forwards = rest.load_at_rest(body, y, rows, now, s).tilting
     ahead = algebra.to_body(rows, (forwards[0], forwards[1], 0.0))
-    quarter = body.count // forces.MOST
+    quarter = body.count // case.MOST
     turns = atan2(ahead[1], ahead[0]) / (2 * math.pi)
     first = math.floor(turns * body.count + 0.5) % body.count
     n = 0
-    for k in range(forces.MOST):
+    for k in range(case.MOST):
         i = (first + k * quarter) % body.count
         if solid.gap(body, y, rows[2], i) <= limits.TOUCH:
             s.which[n] = i
@@ -105,7 +105,7 @@ def pick_feet(body, y, rows, s):
     """
     if body.rim > 0:
         return touching(body, y, rows, s)
-    n = min(body.count, forces.MOST)
+    n = min(body.count, case.MOST)
     for k in range(n):
         s.which[k] = k * body.count // n
     return n

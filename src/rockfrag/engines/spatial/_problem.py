@@ -16,7 +16,8 @@ Names (``_body`` explains the state and the numbers of contacts):
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _case as case
+from rockfrag.engines.spatial import _delassus as delassus
 from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _stick as stick
 from rockfrag.engines.spatial._cone import solve_cones
@@ -100,7 +101,7 @@ def solve(body, y, rows, n, least, moment, s):
     Arguments are those of :func:`_stick.stick_alone_or_by_two`, which finds nearly all. What slides, regains its
     grip or is at a wall goes to the cones at once.
     """
-    plain = not forces.picks_wall(n, s)
+    plain = not case.picks_wall(n, s)
     for i in range(n):
         regains = s.slid[i] and s.friction[i] < s.holds[i]
         plain = plain and not (s.given[i] or regains)
@@ -108,7 +109,7 @@ def solve(body, y, rows, n, least, moment, s):
         found, solutions = stick.stick_alone_or_by_two(body, rows, n, least, moment, s)
         if found >= 0:
             return found, solutions
-    forces.fill_delassus(body, rows, s.which, n, s.delassus)
+    delassus.fill_delassus(body, rows, s.which, n, s.delassus)
     fill_edges(body, y, rows, s.which, n, s)
     return solve_cones(s, n, least)
 
@@ -169,6 +170,6 @@ def least_needed(n, found, s):
     best = -1
     for k in range(n):
         apart = s.after[3 * k + 2]
-        if not forces.in_set(found, k) and (best < 0 or apart > s.after[3 * best + 2]):
+        if not case.in_set(found, k) and (best < 0 or apart > s.after[3 * best + 2]):
             best = k
     return best

@@ -15,8 +15,9 @@ from typing import Any, NamedTuple
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _limits as limits
+from rockfrag.engines.spatial import _ties as ties
 
 # force of ties over the weight [-] that is rounding; and what two directions differ by that are one [-]
 NO_FORCE, PARALLEL = 1e-9, 1e-9
@@ -76,7 +77,7 @@ def load_at_rest(body, y, rows, gravity, s):
     force, tilting, twisting, tied = gravity, gravity, 0.0, False
     if is_tied(body, y, rows, s):
         tied = True
-        moment = algebra.to_world(rows, forces.twist_by_ties(s))
+        moment = algebra.to_world(rows, ties.twist_by_ties(s))
         force = algebra.to_world(rows, (s.pulled[0], s.pulled[1], s.pulled[2]))
         force = algebra.plus(gravity, force)
         x, z = moment[1] / body.height, -moment[0] / body.height
@@ -210,6 +211,6 @@ def is_tied(body, y, rows, s):
     """Whether ties act at a body as it stands with more than rounding; their force stays in s.pulled [N/kg]."""
     if body.constraints == 0:
         return False
-    forces.fill_tie_forces(body, y, rows, s)
+    ties.fill_tie_forces(body, y, rows, s)
     pulled = abs(s.pulled[0]) + abs(s.pulled[1]) + abs(s.pulled[2])
-    return pulled > NO_FORCE * s.field[forces.GRAVITY]
+    return pulled > NO_FORCE * s.field[case.GRAVITY]

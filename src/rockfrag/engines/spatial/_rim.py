@@ -14,8 +14,8 @@ from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _contacts as contacts
-from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _gaps as gaps
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _outcome as outcome
@@ -42,9 +42,9 @@ def start_rolling(body, y, towards_x, towards_y, gravity, s):
     before = (y[solid.PLACE], y[solid.PLACE + 1], y[solid.HEIGHT])
     tilt_about(body, y, u, RIM_START)
     after = (y[solid.PLACE], y[solid.PLACE + 1], y[solid.HEIGHT])
-    moving = (gravity[0], gravity[1], gravity[2] + s.field[forces.GRAVITY])
+    moving = (gravity[0], gravity[1], gravity[2] + s.field[case.GRAVITY])
     y[solid.WORK] += algebra.dot(moving, algebra.minus(after, before))
-    s.closed[0], s.slides[0] = solid.rim_contact(body), forces.STICKS
+    s.closed[0], s.slides[0] = solid.rim_contact(body), case.STICKS
     s.count, s.rests = 1, 0
     gaps.settle(body, y, s)
 
@@ -79,7 +79,7 @@ def rim_instead_of_feet(body, y, gravity, s):
     n = s.count
     if body.rim == 0.0 or n == 0 or n > 2 or s.closed[0] == solid.rim_contact(body):
         return
-    towards_x, towards_y, sliding = 0.0, 0.0, forces.STICKS
+    towards_x, towards_y, sliding = 0.0, 0.0, case.STICKS
     for i in range(n):
         towards_x += body.points[s.closed[i], 0] - body.centre[0]
         towards_y += body.points[s.closed[i], 1] - body.centre[1]
@@ -95,13 +95,13 @@ def tip_over_rim(body, y, towards_x, towards_y, sliding, gravity, s):
     """
     omega = solid.omega_of(y)
     velocity = solid.centre_velocity(y)
-    before = solid.balance(body, y, s.field[forces.GRAVITY])
+    before = solid.balance(body, y, s.field[case.GRAVITY])
     start_rolling(body, y, towards_x, towards_y, gravity, s)
-    if sliding == forces.SLIDES:
-        s.slides[0] = forces.SLIDES
+    if sliding == case.SLIDES:
+        s.slides[0] = case.SLIDES
         solid.set_spin(y, omega)
         solid.set_velocity(y, velocity)
-    solid.pay(body, y, solid.balance(body, y, s.field[forces.GRAVITY]) - before)
+    solid.pay(body, y, solid.balance(body, y, s.field[case.GRAVITY]) - before)
 
 
 @kernel
@@ -113,10 +113,10 @@ def look_after_rim(body, y, tau, cut, ahead, s, out):
     if algebra.norm(up[0], up[1]) >= FLAT_PASS:
         outcome.note_loss(small_rim(body, y, tau, cut, s), out)
         return ahead
-    before = solid.energy(body, y, s.field[forces.GRAVITY])
+    before = solid.energy(body, y, s.field[case.GRAVITY])
     s.goes_on = 0
     pass_flat(body, y, s)
-    outcome.note_loss(before - solid.energy(body, y, s.field[forces.GRAVITY]), out)
+    outcome.note_loss(before - solid.energy(body, y, s.field[case.GRAVITY]), out)
     return AFTER_PASS
 
 
@@ -127,7 +127,7 @@ def pass_flat(body, y, s):
     Its contact turns by a fixed angle, ``body.pass_turn`` rolling and ``slide_turn`` sliding [rad], and the tilt
     rises as it sank. A body whose tilt rises already is left as it is.
     """
-    gravity = s.field[forces.GRAVITY]
+    gravity = s.field[case.GRAVITY]
     up = algebra.rotation(y)[2]
     from_here, tilt = solid.rim_direction(up)
     # rate of the vertical as the body sees it, towards the upright while the body sinks
@@ -135,7 +135,7 @@ def pass_flat(body, y, s):
     if sinking[0] * up[0] + sinking[1] * up[1] >= 0.0:
         return
     before = solid.energy(body, y, gravity)
-    slides = s.slides[0] == forces.SLIDES
+    slides = s.slides[0] == case.SLIDES
     angle = body.slide_turn if slides else body.pass_turn
     goes_back = sinking[0] * from_here[1] - sinking[1] * from_here[0] < 0
     if goes_back:
@@ -157,7 +157,7 @@ def pass_flat(body, y, s):
 def rise(body, y, u, rate, s):
     """Let a body that is next to flat tilt up about the rim's point towards u, at a ``rate`` [rad/s]."""
     y[solid.SPIN], y[solid.SPIN + 1] = -rate * u[1], rate * u[0]
-    if s.slides[0] == forces.SLIDES:
+    if s.slides[0] == case.SLIDES:
         y[solid.UPWARD] -= rising(body, y, solid.rim_contact(body))
     else:
         gaps.settle(body, y, s)
@@ -180,16 +180,16 @@ def small_rim(body, y, tau, cut, s):
     # of the motion that tilts the body, what it would lose by lying down [J/kg]
     a, b, _ = solid.omega_of(y)
     tilting = 0.5 * (body.inertia[0, 0] * a**2 + body.inertia[1, 1] * b**2)
-    lift = s.field[forces.GRAVITY] * body.rim * algebra.norm(rows[2][0], rows[2][1])
+    lift = s.field[case.GRAVITY] * body.rim * algebra.norm(rows[2][0], rows[2][1])
     if tilting + 0.5 * y[solid.UPWARD] ** 2 + lift >= small:
         return 0.0
-    before = solid.energy(body, y, s.field[forces.GRAVITY])
-    gravity = forces.effective_gravity_at(s.field, tau)
+    before = solid.energy(body, y, s.field[case.GRAVITY])
+    gravity = case.effective_gravity_at(s.field, tau)
     if rest.rest_margin(body, y, rows, gravity, s) >= 0 and before < small:
         gaps.come_to_rest(body, y, s)
-    elif s.slides[0] == forces.SLIDES and body.kinetic * body.height < body.rim:
+    elif s.slides[0] == case.SLIDES and body.kinetic * body.height < body.rim:
         y[solid.UPWARD] = y[solid.SPIN] = y[solid.SPIN + 1] = 0.0
         gaps.lay_flat(body, y)
         if not modes.choose_mode(body, tau, y, s):
             contacts.jam(body, y, s)
-    return before - solid.energy(body, y, s.field[forces.GRAVITY])
+    return before - solid.energy(body, y, s.field[case.GRAVITY])

@@ -17,23 +17,25 @@ from rockfrag.engines.pure_rocking.kernels.dormand_prince import (
     error_rate,
 )
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _face as face
-from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _hinge as hinge
 from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _pivot as pivot
-from rockfrag.engines.spatial._cone import cones_hold
-from rockfrag.engines.spatial._forces import (
+from rockfrag.engines.spatial._case import (
     SLIDES,
     STAGES,
     at_wall,
-    rates,
-    slip_of,
+)
+from rockfrag.engines.spatial._cone import cones_hold
+from rockfrag.engines.spatial._delassus import slip_of
+from rockfrag.engines.spatial._forces import rates
+from rockfrag.engines.spatial._relax import relax, stops
+from rockfrag.engines.spatial._ties import (
     stretch_of,
     tie_force,
     tie_margin,
 )
-from rockfrag.engines.spatial._relax import relax, stops
 
 # velocity away from its surface below which an open contact approaches it, and not by rounding alone [m/s]
 DOWN = -1e-10
@@ -51,21 +53,21 @@ SPREAD = 1e-8
 @kernel
 def kind_of_step(body, s):
     """PIVOT or HINGE, modes with a step of their own if no wall or tie holds the body, or else GENERAL."""
-    kind = forces.kind_of(s)
-    own = kind in (forces.PIVOT, forces.HINGE) and body.constraints == 0
-    return kind if own else forces.GENERAL
+    kind = case.kind_of(s)
+    own = kind in (case.PIVOT, case.HINGE) and body.constraints == 0
+    return kind if own else case.GENERAL
 
 
 @kernel
 def begin(body, tau, y, s):
     """Fill in the rates at the beginning of a step, unless they are those at the end of the last (s.goes_on)."""
     kind = kind_of_step(body, s)
-    if kind == forces.PIVOT:
+    if kind == case.PIVOT:
         if s.goes_on:
             pivot.go_on(s)
         else:
             pivot.begin(body, tau, y, s)
-    elif kind == forces.GENERAL:
+    elif kind == case.GENERAL:
         if s.goes_on:
             for i in range(solid.SIZE):
                 s.slopes[0, i] = s.slopes[STAGES - 1, i]
@@ -82,9 +84,9 @@ def attempt(body, tau, h, y, s):
     The error is the largest of the components, over their size [m, -, m/s, rad/s].
     """
     kind = kind_of_step(body, s)
-    if kind == forces.PIVOT:
+    if kind == case.PIVOT:
         return pivot.attempt(body, tau, h, y, s)
-    if kind == forces.HINGE:
+    if kind == case.HINGE:
         return hinge.attempt(body, tau, h, y, s)
     return attempt_any(body, tau, h, y, s)
 
@@ -96,10 +98,10 @@ def go_on_by(body, at, rest, tau, y, s):
     It is so short that the rates at the end of the step to ``at`` suffice; about an edge the step is taken anew.
     """
     kind = kind_of_step(body, s)
-    if kind == forces.PIVOT:
+    if kind == case.PIVOT:
         pivot.go_on_by(body, tau + at + rest, rest, y, s)
         return
-    if kind == forces.HINGE:
+    if kind == case.HINGE:
         attempt(body, tau, at + rest, y, s)
         return
     for i in range(solid.SIZE):
@@ -250,7 +252,7 @@ def ground_margin(body, y, rows, s):
     closed = closed_on_ground(s)
     turns = cross(rows[2], solid.omega_of(y))
     for i in solid.candidates(body):
-        if not forces.in_set(closed, i):
+        if not case.in_set(closed, i):
             p = solid.arm(body, rows[2], i)
             value = y[solid.HEIGHT] + dot(rows[2], p) + 0.5 * limits.TOUCH
             if (
@@ -291,7 +293,7 @@ def contacts_margin(body, y, rows, s):
     A contact opens where its normal force vanishes, slides where its shear reaches its cone [N/kg], and sticks
     where its slip ends [m/s]. Slip that has not begun yet, which is not armed, may only go forwards.
     """
-    small = LEAST_FORCE * s.field[forces.GRAVITY]
+    small = LEAST_FORCE * s.field[case.GRAVITY]
     # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
     passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
     if at_wall(s) and s.count >= 3 and not s.jammed:
@@ -319,7 +321,7 @@ def spread_load(s):
     The system is the one that :func:`_forces.solve_general` solved last, whose motion is the same however it is
     spread.
     """
-    n, small = s.count, SPREAD * s.field[forces.GRAVITY]
+    n, small = s.count, SPREAD * s.field[case.GRAVITY]
     for i in range(n):
         s.grip[i] = s.holds[i]
     if cones_hold(s, n, (1 << n) - 1, 0.0):
@@ -363,7 +365,7 @@ def dips(body, y, h, s):
     )
     closed = closed_on_ground(s)
     for i in solid.candidates(body):
-        if not forces.in_set(closed, i):
+        if not case.in_set(closed, i):
             p = solid.arm(body, before[2], i)
             sinking = y[solid.UPWARD] + dot(turns, p)
             rising = new[solid.UPWARD] + dot(turns_then, solid.arm(body, after[2], i))

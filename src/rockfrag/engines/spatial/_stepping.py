@@ -15,11 +15,13 @@ impulse [m/s]; axes 0 and 1 are along the contact, 2 is away from it.
 from rockfrag.engines.algebra import vectors as algebra
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _case as case
 from rockfrag.engines.spatial import _contacts as contacts
-from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _delassus as delassus
 from rockfrag.engines.spatial import _gaps as gaps
 from rockfrag.engines.spatial import _limits as limits
 from rockfrag.engines.spatial import _modes as modes
+from rockfrag.engines.spatial import _ties as ties
 
 PARTS = 16  # steps of a whole interval
 NEAR = 1e-3  # gap below which a contact may be met in a step [m]
@@ -38,10 +40,10 @@ def pass_interval(body, tau, dt, y, s):
     s.jammed = 0
     lost, n = 0.0, 0
     for part in range(parts):
-        before = solid.balance(body, y, s.field[forces.GRAVITY])
+        before = solid.balance(body, y, s.field[case.GRAVITY])
         n = take_step(body, tau + part * h, h, y, s)
         lost += loss_since(body, before, y, s)
-    before = solid.balance(body, y, s.field[forces.GRAVITY])
+    before = solid.balance(body, y, s.field[case.GRAVITY])
     close_pressed(body, y, n, s)
     if not modes.choose_mode(body, dt, y, s):
         contacts.jam(body, y, s)
@@ -51,9 +53,9 @@ def pass_interval(body, tau, dt, y, s):
 @kernel
 def loss_since(body, before, y, s):
     """Take from the velocities what energy was gained since a balance; return what was lost [J/kg]."""
-    gained = solid.balance(body, y, s.field[forces.GRAVITY]) - before
+    gained = solid.balance(body, y, s.field[case.GRAVITY]) - before
     solid.pay(body, y, gained)
-    return before - solid.balance(body, y, s.field[forces.GRAVITY])
+    return before - solid.balance(body, y, s.field[case.GRAVITY])
 
 
 @kernel
@@ -64,11 +66,11 @@ def take_step(body, tau, h, y, s):
     these velocities.
     """
     rows = algebra.rotation(y)
-    weight = forces.load_on(
-        body, y, rows, forces.effective_gravity_at(s.field, tau + 0.5 * h), s
+    weight = ties.load_on(
+        body, y, rows, case.effective_gravity_at(s.field, tau + 0.5 * h), s
     )
     load = algebra.to_world(rows, weight)
-    spin = solid.free_spin(body, solid.omega_of(y), forces.twist_by_ties(s))
+    spin = solid.free_spin(body, solid.omega_of(y), ties.twist_by_ties(s))
     for k in range(3):
         y[solid.VELOCITY + k] += h * load[k]
         y[solid.SPIN + k] += h * spin[k]
@@ -81,9 +83,9 @@ def take_step(body, tau, h, y, s):
     y[solid.WORK] += h * (
         load[0] * y[solid.VELOCITY]
         + load[1] * y[solid.VELOCITY + 1]
-        + (load[2] + s.field[forces.GRAVITY]) * y[solid.UPWARD]
+        + (load[2] + s.field[case.GRAVITY]) * y[solid.UPWARD]
     )
-    y[solid.WORK] += h * algebra.dot(forces.twist_by_ties(s), solid.omega_of(y))
+    y[solid.WORK] += h * algebra.dot(ties.twist_by_ties(s), solid.omega_of(y))
     for k in range(3):
         y[solid.PLACE + k] += h * y[solid.VELOCITY + k]
     algebra.turn(y, algebra.scaled(h, solid.omega_of(y)))
@@ -109,7 +111,7 @@ def add_near(body, y, rows, i, n, h, s):
     (``gives``), which is all that Gauss and Seidel's method asks for; its impulse (``shove``) begins at none.
     """
     gap = solid.gap_of(body, y, rows, i)
-    if gap > NEAR or n == forces.MOST_NEAR:
+    if gap > NEAR or n == case.MOST_NEAR:
         return n
     u = solid.in_frame(body, i, solid.velocity_of(body, y, rows, i))
     slips = algebra.norm(u[0], u[1]) > limits.AT_REST
@@ -117,9 +119,9 @@ def add_near(body, y, rows, i, n, h, s):
     s.rubs[n] = solid.kinetic_of(body, i) if slips else solid.static_of(body, i)
     s.closes[n] = max(gap, 0.0) / h
     for axis in range(3):
-        push = forces.push_along(body, rows, i, axis)
+        push = delassus.push_along(body, rows, i, axis)
         p = solid.arm(body, rows[2], i)
-        answer = solid.in_frame(body, i, forces.response(body, rows, p, p, push))
+        answer = solid.in_frame(body, i, delassus.response(body, rows, p, p, push))
         s.gives[n, axis] = answer[axis]
         s.shove[n, axis] = 0.0
     return n + 1
@@ -138,7 +140,7 @@ def sweep(body, y, rows, n, s):
         normal = max(s.shove[k, 2] - (u[2] + s.closes[k]) / s.gives[k, 2], 0.0)
         change = normal - s.shove[k, 2]
         s.shove[k, 2] = normal
-        forces.push_at(body, y, rows, i, (0.0, 0.0, change))
+        delassus.push_at(body, y, rows, i, (0.0, 0.0, change))
         worst = max(worst, abs(change) * s.gives[k, 2])
         u = solid.in_frame(body, i, solid.velocity_of(body, y, rows, i))
         # one compliance for both axes along the contact: the larger one, which corrects too little rather than
@@ -149,7 +151,7 @@ def sweep(body, y, rows, n, s):
         if shear > limit:
             a, b = a * limit / shear, b * limit / shear
         change = algebra.norm(a - s.shove[k, 0], b - s.shove[k, 1])
-        forces.push_at(body, y, rows, i, (a - s.shove[k, 0], b - s.shove[k, 1], 0.0))
+        delassus.push_at(body, y, rows, i, (a - s.shove[k, 0], b - s.shove[k, 1], 0.0))
         s.shove[k, 0], s.shove[k, 1] = a, b
         worst = max(worst, change * soft)
     return worst
@@ -198,6 +200,6 @@ def close_pressed(body, y, n, s):
     """Close the contacts that were pressed in the last step, at most MOST, as ones that slide."""
     s.count = 0
     for k in range(n):
-        if s.shove[k, 2] > 0.0 and s.count < forces.MOST:
-            s.closed[s.count], s.slides[s.count] = s.near[k], forces.SLIDES
+        if s.shove[k, 2] > 0.0 and s.count < case.MOST:
+            s.closed[s.count], s.slides[s.count] = s.near[k], case.SLIDES
             s.count += 1

@@ -30,7 +30,11 @@ from rockfrag.engines.algebra.vectors import (
 )
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
-from rockfrag.engines.spatial._forces import stop_edge, stop_point, twist_by_ties
+from rockfrag.engines.spatial._closed_forms import (
+    stop_edge,
+    stop_point,
+)
+from rockfrag.engines.spatial._ties import twist_by_ties
 
 NOTHING = (0.0, 0.0, 0.0)
 ROUNDING = 1e-11  # speed over the largest one to stop below which a contact does not approach [-]

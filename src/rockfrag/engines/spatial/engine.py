@@ -30,7 +30,7 @@ from rockfrag.engines.spatial._body import (
     PLACE,
     SPIN,
 )
-from rockfrag.engines.spatial._forces import CASE
+from rockfrag.engines.spatial._case import CASE
 from rockfrag.engines.spatial.body import (
     acting,
     kernel_body,
