@@ -320,7 +320,7 @@ def test_each_value_counts_where_a_single_motion_tried_it():
     assert 0.2 <= found.theta <= 0.3
 
 
-def test_the_local_share_is_the_mean_under_a_normal_kernel_of_half_silvermans_width():
+def test_the_local_fraction_is_the_mean_under_a_normal_kernel_of_half_silvermans_width():
     im, fell = np.array([0.1, 0.2, 0.4, 0.5, 0.9]), np.array([0, 1, 0, 1, 1])
     table = pd.DataFrame({"pga_g": im, "overturned": fell})
     wide = 0.53 * np.log(im).std() * 5**-0.2
@@ -331,7 +331,7 @@ def test_the_local_share_is_the_mean_under_a_normal_kernel_of_half_silvermans_wi
     assert local_fraction(outcomes, at) == pytest.approx(expected)
 
 
-def test_counts_have_the_local_share_of_as_many_single_tests():
+def test_counts_have_the_local_fraction_of_as_many_single_tests():
     counts = pd.DataFrame(
         {"pga_g": [0.1, 0.3, 0.8], "overturned": [0, 3, 4], "trials": [2, 7, 5]}
     )

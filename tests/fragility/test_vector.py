@@ -217,8 +217,10 @@ def test_limits_cover_and_the_interaction_test_keeps_its_level(earthquakes):
     assert abs(found / laboratories - 0.05) <= 0.02
 
 
-def test_tables_hold_the_coefficient_of_a_product_that_earned_its_place():
-    table = laboratory(np.random.default_rng(2), 10, interaction=0.8)
+@pytest.mark.parametrize("seed", [2, 4])
+def test_tables_hold_the_coefficient_of_a_product_that_earned_its_place(seed):
+    """At 4 the slope by one measure nearly vanishes at some value of the other: limits are infinite there."""
+    table = laboratory(np.random.default_rng(seed), 10, interaction=0.8)
     fit = fit_vector(table, MEASURES)
     assert fit.interaction.kept
     row = vector_tables({"T1": table}, (MEASURES,)).fits.iloc[0]

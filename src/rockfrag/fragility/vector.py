@@ -125,7 +125,9 @@ class VectorFragility:
         half = np.full(other.shape, np.inf)
         if len(left_out) > 1:
             half = half_width(left_out, self.level)
-        return np.exp(centre), np.exp(centre - half), np.exp(centre + half)
+        # where a slope nearly vanishes a limit is beyond all numbers
+        with np.errstate(over="ignore"):
+            return np.exp(centre), np.exp(centre - half), np.exp(centre + half)
 
     def mean_over(self, first: ArrayLike, second: ArrayLike) -> Floats:
         """Probability in the first measure alone, (n,): the mean over the second one's values of some records.
