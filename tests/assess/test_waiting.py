@@ -19,6 +19,7 @@ from rockfrag.assess.findings import lines_of
 from rockfrag.assess.inventory import assess_each
 from rockfrag.assess.outcomes import Shaking
 from rockfrag.cli.main import main
+from rockfrag.engines.compile import jit
 from rockfrag.engines.planar.integrate import integrate_cases
 from rockfrag.runtime.progress import in_words
 
@@ -133,6 +134,18 @@ def test_a_first_answer_says_how_long_its_kernels_compile(few):
         assert words == f"compiling once on this machine, about {contacts}"
     assert said["block"].startswith("compiling once on this machine, about ")
     assert said["box"] != said["block"]
+
+
+def test_a_numba_that_is_not_known_compiles_longer_which_is_said(few):
+    request = asked(**BLOCK)
+    plan = plan_for(request, few, brief=False, holds=False)
+    with (
+        patch.object(answer, "is_kept", lambda _: False),
+        patch.object(jit, "KNOWN", False),
+    ):
+        (words,) = waiting_for(request, plan)
+    about = in_words(4 * (COMPILING_S["core"] + COMPILING_S["blocks"]))
+    assert words.startswith(f"compiling once on this machine, about {about}; numba ")
 
 
 def test_what_is_refused_waits_for_nothing(own_records, tmp_path, capsys):

@@ -49,6 +49,7 @@ from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
+from rockfrag.engines.compile import jit
 from rockfrag.engines.pure_rocking.kernels.lanes.block import integrate_blocks
 from rockfrag.engines.pure_rocking.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.engines.spatial._integrate import integrate_scales
@@ -361,6 +362,8 @@ LEVELS_OF_HOLDERS = 8
 
 COMPILING_S = {"blocks": 3, "stacks": 8, "contacts": 30, "space": 40, "core": 20}
 """About how long kernels compile once on a machine, by what they are for [s]; a block's are 54 s together."""
+OTHER_NUMBA = 4
+"""How many times as long that takes with a numba whose private parts are not known (``docs/kernels.md``)."""
 
 _CONTACTS = "rockfrag.engines.planar.integrate.integrate_cases"
 
@@ -396,7 +399,9 @@ def waiting_for(request: Request, plan: Plan) -> list[str]:
     new = [name for name, entry in kernels.items() if not is_kept(entry)]
     if new:
         compiling = sum(map(COMPILING_S.__getitem__, new))
-        said.append(f"compiling once on this machine, about {in_words(compiling)}")
+        taken = in_words(compiling if jit.KNOWN else OTHER_NUMBA * compiling)
+        quicker = "" if jit.KNOWN else f"; numba {jit.TESTED_NUMBA[-1]}* is quicker"
+        said.append(f"compiling once on this machine, about {taken}{quicker}")
     seconds = seconds_of([request], plan) + seconds_of_holders(request, plan)
     seconds /= os.cpu_count() or 1
     if seconds > LONG:
