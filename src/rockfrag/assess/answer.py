@@ -362,8 +362,6 @@ LEVELS_OF_HOLDERS = 8
 
 COMPILING_S = {"blocks": 3, "stacks": 8, "contacts": 30, "space": 40, "core": 20}
 """About how long kernels compile once on a machine, by what they are for [s]; a block's are 54 s together."""
-OTHER_NUMBA = 4
-"""How many times as long that takes with a numba whose private parts are not known (``docs/kernels.md``)."""
 
 _CONTACTS = "rockfrag.engines.planar.integrate.integrate_cases"
 
@@ -399,9 +397,12 @@ def waiting_for(request: Request, plan: Plan) -> list[str]:
     new = [name for name, entry in kernels.items() if not is_kept(entry)]
     if new:
         compiling = sum(map(COMPILING_S.__getitem__, new))
-        taken = in_words(compiling if jit.KNOWN else OTHER_NUMBA * compiling)
-        quicker = "" if jit.KNOWN else f"; numba {jit.TESTED_NUMBA[-1]}* is quicker"
-        said.append(f"compiling once on this machine, about {taken}{quicker}")
+        words = f"compiling once on this machine, about {in_words(compiling)}"
+        # without its private parts (docs/kernels.md)
+        longer = (
+            f" with numba {jit.TESTED_NUMBA[-1]}x, with this one many times as long"
+        )
+        said.append(words if jit.KNOWN else words + longer)
     seconds = seconds_of([request], plan) + seconds_of_holders(request, plan)
     seconds /= os.cpu_count() or 1
     if seconds > LONG:
