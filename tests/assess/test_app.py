@@ -101,6 +101,8 @@ def of_holder(holder: str, mitigations):
     [
         ({}, ("putty", "bracket", "isolator", "springs")),
         ({"depth": "30 cm"}, ("putty", "cord")),
+        # what is wider than its pedestal
+        ({"pedestal_width": "16 cm", "pedestal_height": "30 cm"}, ("putty",)),
         pytest.param({}, TRIED, marks=pytest.mark.slow),
         pytest.param(
             {"pedestal_width": "40 cm", "pedestal_height": "50 cm"},
