@@ -121,7 +121,9 @@ def test_a_list_that_is_saved_is_opened_again():
 
 
 @pytest.mark.parametrize(
-    "line", [f"name: a{' ' * 190_000}b", f"name: {' #' * 90_000}", "#" * 190_000]
+    "line",
+    [f"name: a{' ' * 190_000}b", f"name: {' #' * 90_000}", "#" * 190_000],
+    ids=["blanks", "marks", "a comment"],
 )
 def test_a_line_of_blanks_does_not_stop_the_page(line):
     found = opened(f"{line}\nwidth: 30cm # wide\n", "statue.yaml")

@@ -11,6 +11,7 @@ from itertools import dropwhile, takewhile
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from rockfrag.base.errors import InputError
@@ -537,7 +538,10 @@ def make_catalogue(
         )
     _name_uniquely(rows)
     draft.note_names_of_one_day(rows)
-    draft.table = pd.DataFrame(rows, columns=list(COLUMNS), dtype=object).fillna("")
+    table = pd.DataFrame(rows, columns=list(COLUMNS), dtype=object)
+    # fillna of pandas before 3 would turn columns of numbers into such
+    filled = np.where(table.isna(), "", table)
+    draft.table = pd.DataFrame(filled, columns=table.columns, dtype=object)
     return draft
 
 
