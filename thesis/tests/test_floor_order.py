@@ -80,8 +80,13 @@ def test_other_buildings_are_compared_for_objects_of_ones_own():
     """They were taken for the thesis's, whose slenderness alone was known."""
     names = {"T1": "bust", "T2": "vase", "T3": "column"}
     own = {names[name]: body for name, body in THESIS_BODIES.items() if name in names}
-    about = {"axis": "reference", "value": 0.0, "label": "reference", "credible": True}
-    tests = table_of().assign(**about, definition="laboratory")
+    tests = table_of().assign(
+        axis="reference",
+        value=0.0,
+        label="reference",
+        credible=True,
+        definition="laboratory",
+    )
     tests["object"] = tests["object"].map(names)
     margins = margins_table(tests, own).set_index("hypothesis")["margin"]
     assert margins["order"] == pytest.approx(math.log(1.2 / 1.1))

@@ -398,11 +398,11 @@ def waiting_for(request: Request, plan: Plan) -> list[str]:
     if new:
         compiling = sum(map(COMPILING_S.__getitem__, new))
         words = f"compiling once on this machine, about {in_words(compiling)}"
-        # without its private parts (docs/kernels.md)
-        longer = (
-            f" with numba {jit.TESTED_NUMBA[-1]}x, with this one many times as long"
-        )
-        said.append(words if jit.KNOWN else words + longer)
+        if not jit.KNOWN:
+            # without its private parts (docs/kernels.md)
+            known = f"numba {jit.TESTED_NUMBA[-1]}x"
+            words += f" with {known}, with this one many times as long"
+        said.append(words)
     seconds = seconds_of([request], plan) + seconds_of_holders(request, plan)
     seconds /= os.cpu_count() or 1
     if seconds > LONG:

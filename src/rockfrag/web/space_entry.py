@@ -11,9 +11,7 @@ from rockfrag.base.elementary import atan2, sin_cos
 from rockfrag.engines.compile.jit import compile_for_kernels, kernel
 from rockfrag.engines.spatial import _describe
 from rockfrag.engines.spatial._body import BODY, SIZE
-from rockfrag.engines.spatial._case import (
-    CASE,
-)
+from rockfrag.engines.spatial._case import CASE
 from rockfrag.engines.spatial._integrate import integrate
 from rockfrag.engines.spatial._outcome import OUTCOME
 from rockfrag.system import footprint, geometry
